@@ -33,9 +33,6 @@ namespace {
 constexpr double kUntilDepths = 0.2;
 constexpr double kUntilSurface = 0.5;
 
-/// The notes where a burr enters a forbidden region: between those of hints and of injuries.
-constexpr hint::ChimeNotes kKeepOutNotes{660.0, 660.0, 0.3};
-
 /// How many bones a trial has had in earlier runs.
 std::int32_t bones_used(const SessionFile& file, const PlannedTrial& trial) {
   std::int32_t most = 0;
@@ -61,7 +58,10 @@ std::vector<PlannedTrial> procedures_of(const BoneDefinition& d, const SessionPl
 }
 
 BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& place)
-    : d_(definition), place_(place), plan_(procedures_of(definition, place)) {
+    : d_(definition),
+      place_(place),
+      plan_(procedures_of(definition, place)),
+      injuries_(definition, place.real) {
   if (d_.bones.empty()) {
     throw InputError(fmt::format("{}: has no bones to drill", d_.file_name));
   }
@@ -74,26 +74,14 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (const auto page = page_of<TuningPage>(place.auxiliary_pages)) {
     tuning_ = page->tuning();
   }
-  open_sound();
-  if (d_.drilling.second) {
-    logs_.watch_second();
-  }
-  if (d_.tools_meet()) {
-    logs_.watch_tool_contact();
-  }
-  if (d_.has_handpiece()) {
-    logs_.watch_handpiece();
-  }
-  if (d_.osteotomy) {
-    logs_.watch_pieces();
-  }
+  sound_ = std::make_unique<TrialSound>(d_, place, tuning_);
   burrs_ = burr_rows(d_.simulator.tools);
   if (d_.nerves) {
-    nerves_ = std::make_unique<TrialNerves>(d_, place, voice_);
+    nerves_ = std::make_unique<TrialNerves>(d_, place, sound_->nerves());
     logs_.watch_nerves(&nerves_->beside());
   }
   if (d_.hints) {
-    hints_ = std::make_unique<TrialHints>(d_, place.real, chime_);
+    hints_ = std::make_unique<TrialHints>(d_, place.real, sound_->hints());
   }
   for (const auto& bone : d_.bones) {  // before there is a window: it takes seconds
     stills_.push_back(place.window ? screen_stills(d_, *bone) : nullptr);
@@ -102,44 +90,53 @@ BoneTrials::BoneTrials(const BoneDefinition& definition, const SessionPlace& pla
   if (place.frames_per_pass > 0) {
     pictures_ = std::make_unique<BonePictures>(d_, place.frames_per_pass);
   }
+  keep_logs();
 }
 
-void BoneTrials::open_sound() {
-  if (!d_.sound_card || !place_.real) {
-    return;
+/// Each part of a definition that has rows of its own stands here and, if its rows come with every
+/// tick, is watched from here on.
+void BoneTrials::keep_logs() {
+  kept_.keep(logs_.tool);
+  kept_.keep<record::RemovalRow>(
+      logs_.removals, record::table_of<record::RemovalRow>(),
+      [this](SessionFile& file, auto rows) { injuries_.add(file, rows); });
+  kept_.keep(logs_.camera);
+  kept_.keep(logs_.splits);
+  if (!d_.simulator.soft_tissue.empty()) {
+    kept_.keep<record::TearRow>(
+        logs_.tears, record::table_of<record::TearRow>(),
+        [this](SessionFile& file, auto rows) { injuries_.add(file, rows); });
   }
-  if (d_.nerves) {
-    voice_ = std::make_shared<nerve::NerveVoice>(d_.nerves->monitor.rate);
+  if (d_.osteotomy) {
+    logs_.watch_pieces();
+    kept_.keep(logs_.pieces);
+    kept_.keep(logs_.screws);
   }
-  if (d_.hints && d_.hints->sound) {
-    chime_ = std::make_shared<hint::Chime>();
+  if (d_.drilling.second) {
+    logs_.watch_second();
+    kept_.keep(logs_.second);
+  }
+  if (d_.tools_meet()) {
+    logs_.watch_tool_contact();
+    kept_.keep(logs_.tool_contact);
+  }
+  if (d_.has_handpiece()) {
+    logs_.watch_handpiece();
+    kept_.keep(logs_.handpiece);
+  }
+  if (!d_.simulator.bleeding.structures.empty()) {
+    kept_.keep<record::OpeningRow>(logs_.openings, record::table_of<record::OpeningRow>(),
+                                   [this](SessionFile& file, auto rows) {
+                                     file.add(rows);
+                                     openings_ += rows.size();
+                                   });
   }
   if (d_.forbidden) {
-    keep_out_chime_ = std::make_shared<hint::Chime>(kKeepOutNotes);
+    kept_.keep(logs_.crossings);
   }
-  const sound::SoundOutput::Mix mix = [voice = voice_, chime = chime_,
-                                       keep_out = keep_out_chime_](std::span<float> part) {
-    if (voice) {
-      voice->mix(part);
-    }
-    if (chime) {
-      chime->mix(part);
-    }
-    if (keep_out) {
-      keep_out->mix(part);
-    }
-  };
-  BoneSound::ThinBoneNow thin;
   if (tuning_) {
-    thin = [tuning = tuning_] { return tuning->thin_bone(); };
-  }
-  try {
-    sound_ = std::make_unique<BoneSound>(d_, derived_seed(place_.session_seed, "sound"), mix, thin);
-  } catch (const RunError& error) {
-    notice_ = error.what();
-    voice_.reset();
-    chime_.reset();
-    keep_out_chime_.reset();
+    kept_.keep<TakenTuning>(logs_.tunings, record::table_of<record::TuningRow>(),
+                            [this](SessionFile& file, auto taken) { tell_tuning(file, taken); });
   }
 }
 
@@ -148,16 +145,16 @@ std::vector<stimulus::Observer*> BoneTrials::observers() {
   if (pictures_) {
     all.push_back(pictures_.get());
   }
-  if (sound_) {
-    all.push_back(sound_.get());
+  if (sound_->observer() != nullptr) {
+    all.push_back(sound_->observer());
   }
   return all;
 }
 
 std::vector<std::string> BoneTrials::notices() const {
   std::vector<std::string> notices;
-  if (!notice_.empty()) {
-    notices.push_back(notice_);
+  if (!sound_->trouble().empty()) {
+    notices.push_back(sound_->trouble());
   }
   for (const auto& bone : d_.bones) {
     if (!bone::has_vital_structures(*bone)) {
@@ -171,9 +168,9 @@ std::vector<std::string> BoneTrials::notices() const {
     notices.push_back(fmt::format("{} opened and bled (/openings, /field)",
                                   counted(openings_, "place was", "places were")));
   }
-  if (tears_ > 0) {
+  if (const std::uint64_t tears = injuries_.tears(); tears > 0) {
     notices.push_back(fmt::format("soft tissue was torn {} (/tears)",
-                                  tears_ == 1 ? "once" : fmt::format("{} times", tears_)));
+                                  tears == 1 ? "once" : fmt::format("{} times", tears)));
   }
   if (tuned_ > 0) {
     notices.push_back(fmt::format(
@@ -190,43 +187,16 @@ std::span<const record::Phase> BoneTrials::phases() const {
 }
 
 record::TableList BoneTrials::tables() const {
-  record::TableList tables =
-      d_.nerves ? record::with_tables(record::drilling_tables(), record::nerve_tables())
-                : record::drilling_tables();
+  record::TableList tables = record::with_tables(record::drilling_tables(), kept_.tables());
+  if (d_.nerves) {
+    tables = record::with_tables(tables, record::nerve_tables());
+  }
   if (d_.hints) {
     tables = record::with_tables(tables, record::hint_tables());
   }
-  if (!d_.simulator.soft_tissue.empty()) {
-    tables.push_back(&record::table_of<record::TearRow>());
-  }
-  if (is_led()) {
-    tables.push_back(&record::table_of<record::LedRow>());
-  }
-  if (d_.drilling.second) {
-    tables.push_back(&record::table_of<record::SecondHandRow>());
-  }
-  if (d_.tools_meet()) {
-    tables.push_back(&record::table_of<record::ToolContactRow>());
-  }
   tables.push_back(&record::table_of<record::BurrRow>());
-  if (d_.has_handpiece()) {
-    tables.push_back(&record::table_of<record::HandpieceRow>());
-  }
-  if (!d_.simulator.bleeding.structures.empty()) {
-    tables.push_back(&record::table_of<record::OpeningRow>());
-  }
   if (d_.has_field()) {
     tables.push_back(&record::table_of<record::FieldRow>());
-  }
-  if (d_.osteotomy) {
-    tables.push_back(&record::table_of<record::PieceRow>());
-    tables.push_back(&record::table_of<record::ScrewRow>());
-  }
-  if (d_.forbidden) {
-    tables.push_back(&record::table_of<record::CrossingRow>());
-  }
-  if (tuning_) {
-    tables.push_back(&record::table_of<record::TuningRow>());
   }
   if (work_) {
     tables.push_back(&record::table_of<record::WorkRow>());
@@ -251,45 +221,10 @@ std::unique_ptr<Rig> BoneTrials::virtual_rig() const {
 }
 
 void BoneTrials::empty_logs(SessionFile& file) {
-  const auto empty = [&file](auto& log) { log.flush([&file](auto rows) { file.add(rows); }); };
-  empty(logs_.tool);
-  if (!d_.simulator.soft_tissue.empty()) {
-    logs_.tears.flush([&](std::span<const record::TearRow> rows) { tell_tears(file, rows); });
-  }
-  logs_.removals.flush([&](std::span<const record::RemovalRow> rows) { add_removals(file, rows); });
-  empty(logs_.camera);
-  empty(logs_.splits);
-  if (d_.osteotomy) {
-    empty(logs_.pieces);
-    empty(logs_.screws);
-  }
-  if (is_led()) {
-    empty(logs_.led);
-  }
-  if (d_.drilling.second) {
-    empty(logs_.second);
-  }
-  if (d_.tools_meet()) {
-    empty(logs_.tool_contact);
-  }
-  if (d_.has_handpiece()) {
-    empty(logs_.handpiece);
-  }
-  if (!d_.simulator.bleeding.structures.empty()) {
-    logs_.openings.flush([&](std::span<const record::OpeningRow> rows) {
-      file.add(rows);
-      openings_ += rows.size();
-    });
-  }
-  if (d_.forbidden) {
-    empty(logs_.crossings);
-  }
-  if (tuning_) {
-    tell_tuning(file);
-  }
+  kept_.empty(file);
   tell_shared(file);
   if (hints_) {
-    hints_->beside().settle();  // likewise
+    hints_->beside().settle();  // so that the rows up to the last tick are there
     tell_hints(file);
   }
   if (nerves_) {
@@ -302,12 +237,10 @@ void BoneTrials::tell_hints(SessionFile& file) {
   file.add(std::span(rows));
 }
 
-void BoneTrials::tell_tuning(SessionFile& file) {
-  logs_.tunings.flush([&](std::span<const TakenTuning> taken) {
-    const std::vector<record::TuningRow> rows = tuning_->rows_of(taken);
-    tuned_ += rows.size();
-    file.add(std::span(rows));
-  });
+void BoneTrials::tell_tuning(SessionFile& file, std::span<const TakenTuning> taken) {
+  const std::vector<record::TuningRow> rows = tuning_->rows_of(taken);
+  tuned_ += rows.size();
+  file.add(std::span(rows));
 }
 
 /// What the virtual surgeon worked on in a pass.
@@ -344,6 +277,9 @@ SharedSimulation* BoneTrials::share_world(bool leads) {
                     d_.file_name));
   }
   shared_ = std::make_unique<SharedBone>(leads);
+  if (is_led()) {
+    kept_.keep(logs_.led);
+  }
   return shared_.get();
 }
 
@@ -356,46 +292,6 @@ void BoneTrials::tell_shared(SessionFile& file) {
   }
   if (told && told->differs) {
     fmt::print(stderr, "{}\n", told->text);
-  }
-}
-
-void BoneTrials::note_injury(SessionFile& file, const std::string& injury) {
-  file.event("injury", injury);
-  if (place_.real) {
-    warnings_.push_back("injury: " + injury);
-  }
-}
-
-/// The first voxel of each vital structure is an event, too: the console says it at once.
-void BoneTrials::add_removals(SessionFile& file, std::span<const record::RemovalRow> rows) {
-  file.add(rows);
-  const bone::BoneModel& model = *d_.bones[bone_];
-  for (const record::RemovalRow& row : rows) {
-    if (model.structures[row.label].vital && opened_.insert({bones_used_, row.label}).second) {
-      note_injury(file, fmt::format("{} opened at {:.2f} N, on tick {}",
-                                    model.structures[row.label].name, row.force, row.sequence));
-    }
-  }
-}
-
-/// An event each, too: somebody at the console is to know at once.
-void BoneTrials::tell_tears(SessionFile& file, std::span<const record::TearRow> rows) {
-  file.add(rows);
-  for (const record::TearRow& row : rows) {
-    constexpr double kMillimetres = 1000.0;
-    const bone::BoneModel& model = *d_.bones[bone_];
-    const Eigen::Vector3d p = kMillimetres * (pose_of(d_.placement, model.grid) * row.place).eval();
-    note_injury(file,
-                fmt::format("{} torn by {}{} at {:.2f} N, {:.1f} mm deep, at ({:.1f}, {:.1f}, "
-                            "{:.1f}) mm in the world, on tick {}",
-                            model.structures[row.label].name,
-                            row.tool == record::kSecondHand
-                                ? "the tube in the other hand"
-                                : d_.simulator.tools[static_cast<std::size_t>(row.tool)].name,
-                            row.by_suction ? ", which sucks," : "", row.force,
-                            kMillimetres * row.depth, p.x(), p.y(), p.z(), row.sequence));
-    opened_.insert({bones_used_, row.label});
-    ++tears_;
   }
 }
 
@@ -504,6 +400,7 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   }
   stage->stills = stills_[bone_];
   stage_ = std::move(stage);
+  injuries_.begin_bone(*stage_->model, bones_used_);
   if (shared_) {
     shared_->take_new_bone(stage_->simulator->checksum());
   }
@@ -514,7 +411,7 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
     hints_->watch(bone_, *stage_->simulator);
   }
   if (d_.forbidden) {
-    guard_ = std::make_unique<RegionGuard>(*d_.forbidden, d_.region_maps[bone_], keep_out_chime_);
+    guard_ = std::make_unique<RegionGuard>(*d_.forbidden, d_.region_maps[bone_], sound_->regions());
   }
   vibration_.reset();
   if (d_.vibration_gain > 0.0 || tuning_) {
@@ -523,9 +420,7 @@ void BoneTrials::set_up(std::shared_ptr<BoneStage> stage, const PlannedTrial& tr
   if (tuning_) {
     tuning_->begin(*stage_->simulator, vibration_ ? &*vibration_ : nullptr);
   }
-  if (sound_) {
-    sound_->listen_to(stage_);
-  }
+  sound_->listen_to(stage_);
 }
 
 void BoneTrials::tell_preparing(double share) {
@@ -600,7 +495,7 @@ void BoneTrials::close_pass(SessionFile& file, std::int32_t row) {
   }
   if (guard_) {
     guard_->end_pass(logs_);
-    logs_.crossings.flush([&file](auto rows) { file.add(rows); });
+    kept_.empty(file);
   }
   stage_->companions->settle();
   record::ProcedureRow procedure = procedure_of(*stage_, row, static_cast<std::int32_t>(bone_));

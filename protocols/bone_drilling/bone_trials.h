@@ -2,20 +2,20 @@
 
 #include <memory>
 #include <optional>
-#include <set>
-#include <utility>
 #include <vector>
 
 #include "core/subject/drilling/surgeon_work.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_pictures.h"
-#include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/bone_drilling/led_pass.h"
+#include "protocols/bone_drilling/noted_injuries.h"
 #include "protocols/bone_drilling/shared_bone.h"
 #include "protocols/bone_drilling/trial_hints.h"
 #include "protocols/bone_drilling/trial_nerves.h"
+#include "protocols/bone_drilling/trial_sound.h"
+#include "protocols/interface/kept_logs.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {
@@ -41,10 +41,10 @@ class BoneTrials final : public Trials {
   TickLog* tick_log() override { return &logs_; }
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override {
-    return logs_.dropped() + (nerves_ ? nerves_->beside().dropped() : 0) +
+    return kept_.dropped() + (nerves_ ? nerves_->beside().dropped() : 0) +
            (hints_ ? hints_->beside().dropped() : 0);
   }
-  std::vector<std::string> take_warnings() override { return std::exchange(warnings_, {}); }
+  std::vector<std::string> take_warnings() override { return injuries_.take_warnings(); }
   record::TableList tables() const override;
   std::vector<record::Rows> first_rows() const override;
   void check_resumed(const record::SessionReader& file) const override;
@@ -63,12 +63,9 @@ class BoneTrials final : public Trials {
 
  private:
   void tell_preparing(double share);
-  void add_removals(SessionFile& file, std::span<const record::RemovalRow> rows);
-  void note_injury(SessionFile& file, const std::string& injury);
-  void tell_tears(SessionFile& file, std::span<const record::TearRow> rows);
-  void open_sound();
+  void keep_logs();
   void tell_hints(SessionFile& file);
-  void tell_tuning(SessionFile& file);
+  void tell_tuning(SessionFile& file, std::span<const TakenTuning> taken);
   void tell_work(SessionFile& file, std::int32_t pass);
   void restore(const PlannedTrial& trial, SessionFile& file);
   static void begin_again(const PlannedTrial& trial, SessionFile& file);
@@ -87,16 +84,16 @@ class BoneTrials final : public Trials {
   std::unique_ptr<subject::WorkLog> work_;  // of a virtual surgeon on a simulated clock; else null
   FixedPlan plan_;
   DrillingLogs logs_;
+  KeptLogs kept_;  // of these
+  NotedInjuries injuries_;
   std::vector<record::BoneRecord> records_;  // of the bones
   std::vector<record::BurrRow> burrs_;
-  std::shared_ptr<nerve::NerveVoice> voice_;     // of the sound card
-  std::unique_ptr<TrialNerves> nerves_;          // null: nobody watches any
-  std::shared_ptr<hint::Chime> chime_;           // on the sound card; null: none
-  std::shared_ptr<LiveTuning> tuning_;           // by the page of a pilot; null: there is none
-  std::uint64_t tuned_{0};                       // changes that were taken
-  std::unique_ptr<TrialHints> hints_;            // null: none are given
-  std::shared_ptr<hint::Chime> keep_out_chime_;  // on the sound card; null: none
-  std::unique_ptr<RegionGuard> guard_;           // of the bone; null: no region is forbidden
+  std::unique_ptr<TrialNerves> nerves_;  // null: nobody watches any
+  std::unique_ptr<TrialSound> sound_;
+  std::shared_ptr<LiveTuning> tuning_;  // by the page of a pilot; null: there is none
+  std::uint64_t tuned_{0};              // changes that were taken
+  std::unique_ptr<TrialHints> hints_;   // null: none are given
+  std::unique_ptr<RegionGuard> guard_;  // of the bone; null: no region is forbidden
   std::unique_ptr<BonePictures> pictures_;
   std::shared_ptr<BoneStage> stage_;
   std::size_t bone_{0};         // of the definition's
@@ -106,12 +103,7 @@ class BoneTrials final : public Trials {
   std::uint64_t spent_{0};  // ticks of the time limit
   double old_dust_{0.0};    // made in earlier runs of the session, which nobody follows [voxels]
   std::optional<sound::DrillVibration> vibration_;
-  std::unique_ptr<BoneSound> sound_;
-  std::string notice_;
-  std::set<std::pair<std::int32_t, std::uint8_t>> opened_;  // bones and labels of structures
-  std::vector<std::string> warnings_;                       // of injuries, where people drill
-  std::uint64_t tears_{0};                                  // of soft tissue, in this run
-  std::uint64_t openings_{0};                               // of vessels, likewise
+  std::uint64_t openings_{0};           // of vessels, in this run
   std::unique_ptr<SharedBone> shared_;  // with a linked session; null: it is nobody else's
   std::unique_ptr<DrillingPass> pass_;
   std::unique_ptr<LedPass> led_;  // in its stead, on a bone that belongs to the other side

@@ -70,13 +70,6 @@ class DrillingLogs final : public TickLog {
   void record(std::uint64_t sequence, const Readings& readings,
               device::Fault fault) noexcept override;
 
-  std::uint64_t dropped() const noexcept {
-    return tool.dropped() + removals.dropped() + camera.dropped() + splits.dropped() +
-           tears.dropped() + led.dropped() + second.dropped() + openings.dropped() +
-           handpiece.dropped() + tool_contact.dropped() + pieces.dropped() + screws.dropped() +
-           crossings.dropped() + tunings.dropped();
-  }
-
  private:
   record::ToolRow row_;
   record::SecondHandRow second_row_;

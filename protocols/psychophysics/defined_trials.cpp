@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -22,7 +21,6 @@
 #include "protocols/psychophysics/presentation/pass_rows.h"
 #include "protocols/psychophysics/presentation/stage_sight.h"
 #include "protocols/psychophysics/presentation/trial_drawing.h"
-#include "protocols/psychophysics/sequence/kept_script.h"
 #include "protocols/psychophysics/subject/trials_rig.h"
 
 namespace haptrial::protocols {
@@ -73,73 +71,24 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       place_(place),
       root_(definition.root()),
       names_(read_names(root_, definition)),
+      scripts_(definition, place_),
       sequence_(std::in_place, definition, identity_of(definition, place)),
       object_files_(object_files(definition.objects)),
       arms_(arm_rows(definition.hands)),
       touched_bodies_(definition.objects) {
-  if (records_contacts(d_)) {
-    contacts_ = std::make_unique<ContactLog>();
-  }
-  if (root_.has("cursor")) {
-    cursors_ = std::make_unique<CursorLog>();
-  }
-  if (root_.has("targets")) {
-    targets_ = std::make_unique<TargetLog>();
-  }
-  if (d_.script) {
-    use_script();
-  }
-  if (d_.observer.script) {
-    use_decision_script();
-  }
-}
-
-void DefinedTrials::use_script() {
-  std::function<void()> pulse;
-  if (place_.pulse) {
-    pulse = [this] { place_.pulse("waiting for the script of levels", 0.0); };
-  }
-  script_ = std::make_unique<ScriptedLevels>(*d_.script, place_.subject, place_.real, pulse);
-  if (!place_.resumed.empty()) {
-    script_->recall(record::SessionReader(place_.resumed));
-    script_kept_ = script_->recalled();
-  }
-  if (place_.real) {
-    script_->start_early();
-  }
-  sequence_->choose_by(*script_);
-}
-
-/// Starts the script's process with the first decision that a virtual participant leaves to it.
-void DefinedTrials::use_decision_script() {
-  std::function<void()> pulse;
-  if (place_.pulse) {
-    pulse = [this] { place_.pulse("waiting for the script of decisions", 0.0); };
-  }
-  const ScriptPlan& plan = *d_.observer.script;
-  decisions_ = std::make_unique<ScriptedDecisions>(
-      plan, place_.subject, derived_seed(place_.hand_session_seed, "subject"), pulse);
-  if (!place_.resumed.empty()) {
-    decisions_kept_ =
-        kept_before(plan, kDecisionScriptEvent, record::SessionReader(place_.resumed));
-  }
+  const auto open = [this](bool has, auto& log) {
+    if (has) {
+      kept_.keep(log.emplace());
+    }
+  };
+  open(records_contacts(d_), contacts_);
+  open(root_.has("cursor"), cursors_);
+  open(root_.has("targets"), targets_);
+  scripts_.direct(*sequence_);
 }
 
 void DefinedTrials::prepare(const PlannedTrial&, SessionFile& file) {
-  if (rig_ != nullptr && decisions_ != nullptr && !std::exchange(decisions_kept_, true)) {
-    file.event(kDecisionScriptEvent, d_.observer.script->text);
-  }
-  if (script_ == nullptr) {
-    return;
-  }
-  if (!std::exchange(script_kept_, true)) {
-    file.event(kScriptEvent, d_.script->text);
-  }
-  const bool first = script_->left() == 1;
-  for (const std::string& trouble : script_->take_troubles()) {
-    file.event(kScriptTrouble, trouble);
-    script_warning_ = first ? trouble : "";  // later ones are events, and counted at the end
-  }
+  scripts_.write(file, rig_ != nullptr);
 }
 
 Extent DefinedTrials::extent(int most) const {
@@ -167,15 +116,7 @@ record::TableList DefinedTrials::tables() const {
   if (std::ranges::any_of(d_.questions, &TrialQuestion::has_limits)) {
     tables.push_back(&record::table_of<record::OutOfTimeRow>());
   }
-  if (contacts_) {
-    tables.push_back(&record::table_of<record::ContactRow>());
-  }
-  if (cursors_) {
-    tables.push_back(&record::table_of<record::CursorRow>());
-  }
-  if (targets_) {
-    tables.push_back(&record::table_of<record::TargetRow>());
-  }
+  tables = record::with_tables(std::move(tables), kept_.tables());
   touched_bodies_.add_tables(tables);
   if (!object_files_.empty()) {
     tables.push_back(&record::table_of<record::ObjectFileRow>());
@@ -221,11 +162,11 @@ std::unique_ptr<Rig> DefinedTrials::virtual_rig() const {
   said_ = std::make_unique<SimulatedAnswer>();
   TrialsRig::Briefing briefing{&d_, &d_.observer, &d_.questions, d_.stages, &d_.hands, said_.get()};
   briefing.screen = {d_.view.from_above};
-  if (decisions_ != nullptr) {
+  if (scripts_.decisions() != nullptr) {
     briefing.decide = [this](const LeftDecision::DecisionRequest& asked) {
       const PlannedTrial& plan = current_.plan;
-      return decisions_->decide({plan.trial, plan.practice, variables_},
-                                d_.questions[asked.question], asked);
+      return scripts_.decisions()->decide({plan.trial, plan.practice, variables_},
+                                          d_.questions[asked.question], asked);
     };
   }
   auto rig =
@@ -244,8 +185,8 @@ std::optional<PlannedTrial> DefinedTrials::next(const Outcome* last) {
     } else {
       live_.conclude(*last);
       sequence_->conclude(done, done ? outcome_of(last->responses) : kNone, right);
-      if (done && decisions_ != nullptr) {
-        decisions_->told(last->trial.trial, last->trial.practice, last->responses);
+      if (done && scripts_.decisions() != nullptr) {
+        scripts_.decisions()->told(last->trial.trial, last->trial.practice, last->responses);
       }
     }
   }
@@ -313,9 +254,9 @@ Pass& DefinedTrials::make_pass(PlannedTrial&, const record::Phase&) {
                          [](const DeviceArm& arm) { return arm.limits.max_force; });
   setup.said = said_.get();
   setup.left = rig_ != nullptr ? rig_->left() : nullptr;
-  setup.contacts = contacts_.get();
-  setup.cursors = cursors_.get();
-  setup.targets = targets_.get();
+  setup.contacts = contacts_ ? &*contacts_ : nullptr;
+  setup.cursors = cursors_ ? &*cursors_ : nullptr;
+  setup.targets = targets_ ? &*targets_ : nullptr;
   variables_.clear();
   stages_.clear();
   varied_cues_.clear();
@@ -534,22 +475,12 @@ void DefinedTrials::close_pass(SessionFile& file, std::int32_t row) {
   touched_bodies_.keep(*pass_, row, file);
 }
 
-std::vector<std::string> DefinedTrials::take_warnings() {
-  const std::string warning = std::exchange(script_warning_, "");
-  return warning.empty() ? std::vector<std::string>{} : std::vector{warning};
-}
-
 std::string DefinedTrials::why_given_up() const {
   return fmt::format("{}", fmt::join(sequence_->ended_early(), "; "));
 }
 
 std::vector<std::string> DefinedTrials::notices() const {
-  std::vector<std::string> lines;
-  if (script_ != nullptr && script_->left() > 0) {
-    lines.push_back(fmt::format(
-        "{}: in {} of {} trials the level was the procedure's own (events {})",
-        d_.script->file.filename().string(), script_->left(), script_->asked(), kScriptTrouble));
-  }
+  std::vector<std::string> lines = scripts_.notices();
   const std::vector<std::string> bodies = touched_bodies_.notices();
   lines.insert(lines.end(), bodies.begin(), bodies.end());
   return lines;
@@ -576,18 +507,6 @@ void DefinedTrials::keep_level(SessionFile& file, std::int32_t row) {
                     done ? outcome_of(responses()) : kNone});
   }
   file.add(std::span<const record::LevelRow>(rows));
-}
-
-void DefinedTrials::empty_logs(SessionFile& file) {
-  if (contacts_) {
-    contacts_->flush([&file](std::span<const record::ContactRow> rows) { file.add(rows); });
-  }
-  if (cursors_) {
-    cursors_->flush([&file](std::span<const record::CursorRow> rows) { file.add(rows); });
-  }
-  if (targets_) {
-    targets_->flush([&file](std::span<const record::TargetRow> rows) { file.add(rows); });
-  }
 }
 
 /// Reason with the stage that was aborted, and the region that the hand did not come to.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,14 +9,14 @@
 #include "core/record/rows/late_window_row.h"
 #include "core/record/rows/object_file_row.h"
 #include "core/record/rows/trial_rows.h"
+#include "protocols/interface/kept_logs.h"
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/body_report.h"
 #include "protocols/psychophysics/definition/presented.h"
 #include "protocols/psychophysics/live_trials.h"
 #include "protocols/psychophysics/presentation/trial_pass.h"
-#include "protocols/psychophysics/sequence/scripted_decisions.h"
-#include "protocols/psychophysics/sequence/scripted_levels.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
+#include "protocols/psychophysics/session_scripts.h"
 #include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::protocols {
@@ -32,7 +33,7 @@ class DefinedTrials final : public Trials {
 
   Extent extent(int most) const override;
   std::optional<PlannedTrial> next(const Outcome* last) override;
-  bool can_take_back() const override { return script_ == nullptr && decisions_ == nullptr; }
+  bool can_take_back() const override { return !scripts_.any(); }
   std::optional<PlannedTrial> take_back() override;
   std::span<const record::Phase> phases() const override;
   std::unique_ptr<Rig> virtual_rig() const override;
@@ -45,14 +46,11 @@ class DefinedTrials final : public Trials {
   Pass& make_pass(PlannedTrial& trial, const record::Phase& phase) override;
   std::vector<record::ResponseRow> responses() override;
   void close_pass(SessionFile& file, std::int32_t row) override;
-  void empty_logs(SessionFile& file) override;
-  std::uint64_t dropped() const override {
-    return (contacts_ ? contacts_->dropped() : 0) + (cursors_ ? cursors_->dropped() : 0) +
-           (targets_ ? targets_->dropped() : 0);
-  }
+  void empty_logs(SessionFile& file) override { kept_.empty(file); }
+  std::uint64_t dropped() const override { return kept_.dropped(); }
   std::string why_aborted() const override;
   std::optional<record::LiveState> live() const override { return live_.state(); }
-  std::vector<std::string> take_warnings() override;
+  std::vector<std::string> take_warnings() override { return scripts_.take_warnings(); }
   std::string why_given_up() const override;
   std::vector<std::string> notices() const override;
 
@@ -68,8 +66,6 @@ class DefinedTrials final : public Trials {
   const std::vector<std::vector<NamedStage>>& stages() const { return stages_; }
 
  private:
-  void use_script();
-  void use_decision_script();
   void number_bodies(const std::vector<scene::Field>& fields, std::vector<StageSight>& sights);
   void be_late_again(std::size_t interval, std::vector<scene::Field>& fields) const;
   std::optional<Cursor> cursor_of(const Presented& presented, std::size_t place) const;
@@ -89,20 +85,17 @@ class DefinedTrials final : public Trials {
   SessionPlace place_;
   Table root_;
   std::unique_ptr<Names> names_;
-  std::unique_ptr<ScriptedLevels> script_;        // null: the procedures choose
-  bool script_kept_{false};                       // its text is in the file
-  std::string script_warning_;                    // not yet passed on; empty: none
-  std::unique_ptr<ScriptedDecisions> decisions_;  // null: virtual participants decide themselves
-  bool decisions_kept_{false};                    // likewise
-  std::optional<TrialSequence> sequence_;         // made anew where an outcome is taken back
-  std::vector<Outcome> outcomes_;                 // that led it to the present trial
+  SessionScripts scripts_;
+  std::optional<TrialSequence> sequence_;  // made anew where an outcome is taken back
+  std::vector<Outcome> outcomes_;          // that led it to the present trial
   NextTrial current_;
   LiveTrials live_;
   mutable std::unique_ptr<SimulatedAnswer> said_;  // of a virtual participant
   mutable TrialsRig* rig_{nullptr};                // likewise; the runner's
-  std::unique_ptr<TargetLog> targets_;             // null: nothing that is seen moves by itself
-  std::unique_ptr<CursorLog> cursors_;             // null: there is no cursor
-  std::unique_ptr<ContactLog> contacts_;           // null: none are recorded
+  std::optional<TargetLog> targets_;               // none: nothing that is seen moves by itself
+  std::optional<CursorLog> cursors_;               // none: there is no cursor
+  std::optional<ContactLog> contacts_;             // none: none are recorded
+  KeptLogs kept_;                                  // of these
   std::shared_ptr<SeenBodies> bodies_{std::make_shared<SeenBodies>()};  // for the screen
   std::vector<record::ObjectFileRow> object_files_;
   std::vector<record::ArmRow> arms_;  // none where every arm is a tip

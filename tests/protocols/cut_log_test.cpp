@@ -90,7 +90,8 @@ TEST_P(CutLogTest, EveryVoxelOfAFullCutIsInTheFile) {
   collect();
   writer.close();
 
-  EXPECT_EQ(logs.dropped() + log.dropped() + logs.tool.dropped(), 0u);
+  EXPECT_EQ(logs.removals.dropped() + logs.splits.dropped() + log.dropped() + logs.tool.dropped(),
+            0u);
   const record::SessionReader reader(folder / "cut.h5");
   std::set<std::array<std::int32_t, 3>> gone;
   for (const record::RemovalRow& row : reader.rows<record::RemovalRow>()) {
