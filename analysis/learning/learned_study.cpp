@@ -184,7 +184,10 @@ LearnedStudy learned_study(std::span<const LearningQuantity> quantities, const L
 std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated) {
   std::vector<Figure> figures;
   for (const LearnedOutcome& outcome : study.outcomes) {
-    figures.push_back(figure_of(outcome, simulated));
+    Figure figure = figure_of(outcome, simulated);
+    if (!figure.series.empty()) {
+      figures.push_back(std::move(figure));
+    }
   }
   return figures;
 }
@@ -206,10 +209,13 @@ void add_learning_section(Document& document, const LearnedStudy& study,
   for (const LearnedOutcome& outcome : study.outcomes) {
     document.subheading(capitalized(outcome.title) +
                         (unit_of(outcome).empty() ? "" : fmt::format(" [{}]", outcome.unit)));
-    for (const Drawing& drawing : drawings) {
-      if (drawing.figure.name == "learning-" + outcome.name) {
-        document.picture(drawing);
-      }
+    const auto drawing = std::ranges::find_if(drawings, [&](const Drawing& each) {
+      return each.figure.name == "learning-" + outcome.name;
+    });
+    if (drawing != drawings.end()) {
+      document.picture(*drawing);
+    } else {
+      document.paragraph("No figure is drawn: it takes two participants of a group in a session.");
     }
     add_outcome_table(document, outcome, study.plan);
     if (outcome.changes.cells.empty()) {

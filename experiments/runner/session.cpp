@@ -320,6 +320,7 @@ SessionSummary Session::run() {
     channels_.begin();  // after the first tick: before it, the session's clock stands
     notices_.note(missing);
     notices_.note(record_.notice());
+    notices_.note(device_change(request_, record_.earlier().info));
     if (screen_) {
       notices_.note(screen_->summary().notice);
     }

@@ -49,7 +49,8 @@ void check_same_tutor(const SessionRequest& request, const record::SessionReader
 }
 
 /// Checks the facts that a resumed session must have in common with the one that is gone on with.
-void check_same_session(const SessionRequest& request, const record::SessionInfo& before) {
+void check_same_session(const SessionRequest& request, const device::DeviceInfo& device,
+                        const record::SessionInfo& before) {
   const std::string partial = request.file.string() + ".partial";
   if (before.seed != request.seed) {
     throw InputError(
@@ -76,6 +77,18 @@ void check_same_session(const SessionRequest& request, const record::SessionInfo
     throw InputError(fmt::format("{}: was recorded as session {}; resume it with --session {}",
                                  partial, before.session, before.session));
   }
+  const auto number = static_cast<std::uint64_t>(request.participant) + 1;
+  if (before.participant_number != 0 && before.participant_number != number) {
+    throw InputError(fmt::format(
+        "{}: was recorded in the order of participant {}; resume it with --participant {}, not {}",
+        partial, before.participant_number, before.participant_number, number));
+  }
+  if (before.simulated != device.simulated) {
+    throw InputError(fmt::format(
+        "{}: was recorded with {}; resume it with --device {}, not {}", partial,
+        before.simulated ? "a virtual participant" : "a person, on the device " + before.device,
+        before.device, request.device.name));
+  }
 }
 
 }  // namespace
@@ -98,8 +111,17 @@ record::SessionInfo session_info(const SessionRequest& request, const device::De
   info.simulated = device.simulated;
   info.pilot = request.pilot;
   info.session = static_cast<std::uint64_t>(request.session);
+  info.participant_number = static_cast<std::uint64_t>(request.participant) + 1;
   info.participant = request.person;
   return info;
+}
+
+std::string device_change(const SessionRequest& request, const record::SessionInfo& before) {
+  if (before.device.empty() || before.device == request.device.name) {
+    return "";
+  }
+  return fmt::format("goes on with the device {}, though it began with {}, which its file names",
+                     request.device.name, before.device);
 }
 
 std::string tutor_text(const SessionRequest& request) {
@@ -196,7 +218,7 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   record::SessionWriter writer = record::SessionWriter::resume(
       request.file, before, record::with_tables(possible_tables(request), channels.tables()),
       tables_of(request, trials, channels));
-  check_same_session(request, before.info);
+  check_same_session(request, device, before.info);
   const record::SessionReader file(request.file.string() + ".partial");
   check_same_tutor(request, file);
   check_same_quantities(request, file, channels);

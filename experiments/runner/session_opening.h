@@ -38,6 +38,10 @@ DefinitionChanges changes_since(const SessionRequest& request, const record::Ses
 /// checksum; empty: none.
 std::string tutor_text(const SessionRequest& request);
 
+/// A sentence on a session that goes on with another device than it began with; empty: it does not.
+/// @param before  of the earlier runs; without a device where there are none
+std::string device_change(const SessionRequest& request, const record::SessionInfo& before);
+
 /// A new session file, or the one that is gone on with; `before` says what that one holds.
 /// @throws InputError as SessionWriter does, and where the file is of another study, seed or kind,
 /// or cannot be gone on with for a reason of the protocol.

@@ -264,9 +264,14 @@ DryRunSummary run_dry(const protocols::Protocol& protocol, const protocols::Defi
   if (dry_run.frames_per_pass > 0) {
     fs::create_directory(dry_run.folder / "frames");
   }
-  const DryRunSummary summary = SessionWorkers(first, ticks_each, dry_run).run();
-  folder.keep();
-  return summary;
+  try {
+    const DryRunSummary summary = SessionWorkers(first, ticks_each, dry_run).run();
+    folder.keep();
+    return summary;
+  } catch (const RunError& error) {
+    throw RunError(fmt::format("{}\n{} is removed: a dry run is kept whole or not at all",
+                               error.what(), dry_run.folder.string()));
+  }
 }
 
 std::vector<PlannedSession> planned_sessions(const protocols::Definition& definition,

@@ -67,5 +67,21 @@ TEST(LiveDiskTest, AFullDiskEndsTheSessionInASentenceAndItGoesOnWhereThereIsRoom
   EXPECT_THAT(tested, testing::ElementsAre(1, 2));
 }
 
+TEST(LiveDiskTest, ADryRunOnAFullDiskSaysThatNothingIsKept) {
+  if (test::kThreadSanitizer) {
+    GTEST_SKIP() << "the sanitizer keeps files of its own, which the limit breaks";
+  }
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "study.toml", test::brisk_text());
+  const fs::path out = folder / "out";
+  const CommandResult full = LiveCommand("dry-run '" + (folder / "study.toml").string() +
+                                             "' --trials 2 --out '" + out.string() + "'",
+                                         "ulimit -f 360")
+                                 .wait();
+  EXPECT_EQ(full.status, 1) << full.output;
+  EXPECT_THAT(full.errors, HasSubstr("out is removed: a dry run is kept whole or not at all"));
+  EXPECT_FALSE(fs::exists(out));
+}
+
 }  // namespace
 }  // namespace haptrial

@@ -14,6 +14,7 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "tests/experiments/command.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
 #include "tests/support/temporary_folder.h"
@@ -87,6 +88,12 @@ TEST_P(MouseSessionTest, IsEndedByAPersonAndResumedAndEndedByTheExperimenter) {
   const std::string title = load_experiment(definition_of(GetParam())).definition->screen.title;
   ASSERT_NO_FATAL_FAILURE(sit_at_the_mouse(title, place % 2 == 1));
   expect_whole(partial());
+  const test::CommandResult alone =
+      test::run_command("haptrial run '" + definition_of(GetParam()).string() + "' --out '" +
+                        folder_.path().string() + "' --subject S01 --resume");
+  EXPECT_EQ(alone.status, 2) << "a virtual participant would finish a person's session";
+  EXPECT_THAT(alone.errors, testing::HasSubstr("was recorded with a person, on the device mouse; "
+                                               "resume it with --device mouse, not virtual"));
   test::LiveCommand session(run("--resume --console"));
   test::ConsolePerson experimenter(session.line_after("console: "));
   ASSERT_TRUE(experimenter.sees("instructions")) << session.errors();

@@ -166,6 +166,22 @@ TEST_F(ResumedParticipantTest, AnAnswerWhosePassIsLostIsGivenAgain) {
   EXPECT_TRUE(fs::exists(folder_ / "killed.h5.partial.damaged"));
 }
 
+TEST_F(ResumedParticipantTest, TheOrderOfAnotherParticipantIsRefused) {
+  use(kAlternates);
+  kill_at("killed.h5", 4, 1500);
+  SessionRequest other = request("killed.h5", realtime::ClockKind::kReal, 4);
+  other.resume = true;
+  other.participant = 2;
+  try {
+    run_session(other);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("was recorded in the order of participant 1; "
+                                                 "resume it with --participant 1, not 3"));
+  }
+  resume("killed.h5", 4);
+}
+
 std::string short_curl_field() {
   std::string text = test::read_text(HAPTRIAL_SOURCE_DIR "/experiments/curl_field.toml");
   text = test::replaced(text, "for = [0.3, 0.6]", "for = [0.02, 0.04]");

@@ -247,6 +247,24 @@ TEST_F(RetentionSessionTest, AMissingSessionIsNamed) {
   EXPECT_THAT(refused("analyze tests"), HasSubstr("no session that trains"));
 }
 
+/// The analysis knows the group by the identifier, a session by the number.
+TEST_F(RetentionSessionTest, ANumberOfAnotherGroupIsRefused) {
+  const std::string text = refused("run study.toml --subject P01 --participant 3 --session 2");
+  EXPECT_THAT(text, HasSubstr("--participant is 3, a number of seen-and-felt, but P01 is of seen"));
+  EXPECT_THAT(text, HasSubstr("allowed: a number of seen"));
+}
+
+TEST_F(RetentionSessionTest, GroupsOfOneHaveAReportWithoutAFigure) {
+  std::string text = test::replaced(short_study(), "participants = 6", "participants = 3");
+  text = test::replaced(text, "seen = 2\nseen-and-felt = 2\ncontrol = 2",
+                        "seen = 1\nseen-and-felt = 1\ncontrol = 1");
+  test::write_text(*folder_ / "ones.toml", text);
+  good("dry-run ones.toml --out ones");
+  good("analyze ones");
+  EXPECT_THAT(test::read_text(*folder_ / "ones" / "report.md"),
+              HasSubstr("No figure is drawn: it takes two participants of a group in a session."));
+}
+
 TEST_F(RetentionSessionTest, AMistakeInThePlanGetsASentence) {
   const auto refusal = [](const std::string& what, const std::string& by) {
     test::write_text(*folder_ / "bad.toml", test::replaced(short_study(), what, by));

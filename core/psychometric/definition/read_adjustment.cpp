@@ -53,6 +53,7 @@ void read_adjustment(const TrackKeys& keys, Track& track) {
   starts_schema().read(keys.track, keys.procedure, p.starts.levels);
   list_schema().read(keys.track, keys.procedure, p.starts);
   adjusting_schema().read(keys.track, keys.procedure, p);
+  track.steps = p.steps;
   track.most_trials =
       static_cast<int>(p.starts.levels.size()) * p.starts.repetitions * p.most_presentations;
   track.rule = fmt::format(

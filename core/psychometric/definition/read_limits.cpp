@@ -37,12 +37,7 @@ void read_limits(const TrackKeys& keys, Track& track) {
   p.low = track.low;
   p.high = track.high;
   limits_schema().read(keys.track, keys.procedure, p);
-  if (track.axis.scale == Scale::kLinear && track.resolution > p.step) {
-    keys.of("step").reject("step", fmt::format("{:g}", p.step),
-                           fmt::format("at least `resolution`, {:g}, or rounding would hold a "
-                                       "series where it is",
-                                       track.resolution));
-  }
+  track.steps = {p.step};
   track.finds_level = true;
   track.falls = false;
   track.rule = fmt::format(

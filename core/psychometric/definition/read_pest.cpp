@@ -54,6 +54,7 @@ void read_pest(const TrackKeys& keys, Track& track) {
       "from {:g} on, in steps of {:g} at first and {:g} at most; a step of {:g} ended it. {}",
       100.0 * p.target, p.deviation, p.start, p.first_step, p.largest_step, p.smallest_step,
       words_of(stop));
+  track.steps = {p.smallest_step};
   track.begin = [p](std::uint64_t, const std::string&) { return std::make_unique<Pest>(p); };
 }
 

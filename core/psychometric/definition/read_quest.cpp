@@ -317,6 +317,11 @@ std::vector<QuestDimension> read_stimulus(const TrackKeys& keys, Track& track) {
     const auto [low, high] = std::ranges::minmax(levels.values);
     own.low = low;
     own.high = high;
+    if (!has_multiple(low, high, own.resolution)) {
+      all.table(name).reject(
+          "resolution", fmt::format("{:g}", own.resolution),
+          fmt::format("one with a multiple in the range, {:g} to {:g}", low, high));
+    }
     if (stimulus.empty()) {
       track.variable = name;
       track.low = own.low;

@@ -191,6 +191,9 @@ void read_staircase(const TrackKeys& keys, Track& track) {
     Table estimate = keys.of("estimate").table("estimate");
     estimate_schema().read(estimate, p);
   }
+  for (const StaircaseStep& step : p.steps) {
+    track.steps.insert(track.steps.end(), {step.down, step.up});
+  }
   if (p.up == 1) {
     track.balance = balance_of(p.down, p.steps.back());
   }

@@ -67,6 +67,28 @@ const Schema<Track>& track_name_schema() {
   return schema;
 }
 
+/// Rounding must leave a level in the range, and must not take back the smallest step.
+void check_resolution(const TrackKeys& keys, const Track& track) {
+  if (track.resolution == 0.0 || !track.range_known || !(track.low <= track.high)) {
+    return;
+  }
+  Table& table = keys.of("resolution");
+  const std::string found = fmt::format("{:g}", track.resolution);
+  if (!has_multiple(track.low, track.high, track.resolution)) {
+    table.reject(
+        "resolution", found,
+        fmt::format("one with a multiple in the range, {:g} to {:g}", track.low, track.high));
+    return;
+  }
+  const std::optional<double> change = track.smallest_change();
+  if (change && !(track.resolution < 2.0 * *change)) {
+    table.reject("resolution", found,
+                 fmt::format("less than {:g}, twice the smallest step within the range, which "
+                             "rounding would take back",
+                             2.0 * *change));
+  }
+}
+
 Track read_track(Table& procedure, Table& own, std::size_t number) {
   Track track;
   track.name = fmt::format("track {}", number);
@@ -78,6 +100,9 @@ Track read_track(Table& procedure, Table& own, std::size_t number) {
   kind.read(keys, track);
   if (kind.sets_one_variable() && keys.has("expect")) {
     track.expected = read_expectation(keys.of("expect"), track.axis);
+  }
+  if (kind.sets_one_variable()) {
+    check_resolution(keys, track);
   }
   if (track.begin) {  // a mistake in it is seen now and not in the first session
     try {

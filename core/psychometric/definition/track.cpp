@@ -22,6 +22,22 @@ double rounded_within(double asked, double low, double high, double resolution) 
 
 }  // namespace
 
+bool has_multiple(double low, double high, double resolution) noexcept {
+  constexpr double kSlack = 1e-9;  // 0.3 is a multiple of 0.1
+  return resolution <= 0.0 ||
+         std::floor(high / resolution + kSlack) >= std::ceil(low / resolution - kSlack);
+}
+
+std::optional<double> Track::smallest_change() const noexcept {
+  std::optional<double> smallest;
+  for (const double step : steps) {
+    const double up = std::abs(axis.level(axis.at(low) + step) - low);
+    const double down = std::abs(high - axis.level(axis.at(high) - step));
+    smallest = std::min({smallest.value_or(up), up, down});
+  }
+  return smallest;
+}
+
 std::string Track::lesson() const {
   switch (learns_from) {
     case OutcomeForm::kMagnitude:

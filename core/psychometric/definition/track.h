@@ -33,6 +33,9 @@ struct TrackPrediction {
   double trials{0.0};     // expected number
 };
 
+/// Whether a multiple of the resolution is from low to high. @param resolution  0: every number is
+bool has_multiple(double low, double high, double resolution) noexcept;
+
 /// One track of a procedure: it sets a variable of the definition, trial by trial, and learns from
 /// what came of it.
 struct Track {
@@ -55,6 +58,7 @@ struct Track {
   std::size_t outcomes{2};        // that a track of answers tells apart
   std::optional<bool> falls;      // whether answers 1 get rarer as the level rises; none: not known
   Axis axis;                      // of its steps
+  std::vector<double> steps;      // their sizes, on the axis; none: levels follow another rule
   std::optional<double> balance;  // share of answers 1 about which its levels settle, if known
   std::optional<PsychometricParameters> expected;  // that the study counts on
   std::function<std::unique_ptr<Procedure>(std::uint64_t seed, const std::string& name)> begin;
@@ -71,6 +75,9 @@ struct Track {
   /// Level that is presented if a level is asked for: rounded, within the range.
   double applied(double asked) const noexcept;
   Level applied(const Level& asked) const;
+  /// The smallest change of the level by one of its steps, at either end of the range [unit].
+  /// @returns nothing where it has no steps
+  std::optional<double> smallest_change() const noexcept;
   /// Variables that the track sets, in the order of a level's dimensions.
   std::vector<std::string> variables() const;
   bool sets(const std::string& one) const;

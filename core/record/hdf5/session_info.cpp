@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <string_view>
 #include <type_traits>
@@ -33,6 +34,7 @@ void each_field(Info& info, Visit visit) {
   visit("simulated", info.simulated);
   visit("pilot", info.pilot);
   visit("session", info.session);
+  visit("participant_number", info.participant_number);
   visit("participant_identifier", info.participant.identifier);
   visit("participant_handedness", info.participant.handedness);
   visit("participant_age_band", info.participant.age_band);
@@ -59,8 +61,9 @@ struct Get {
     if (version < 2 && is_new(name)) {
       return;
     }
-    if (std::string_view(name) == "session" && !h5::has_attribute(file, name)) {
-      return;  // written before studies could have several sessions
+    const std::string_view later[] = {"session", "participant_number"};  // than version 2
+    if (std::ranges::find(later, name) != std::end(later) && !h5::has_attribute(file, name)) {
+      return;
     }
     if constexpr (std::is_same_v<T, std::string>) {
       value = h5::get_text(file, name);

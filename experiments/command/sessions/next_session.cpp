@@ -175,12 +175,27 @@ std::string chosen(RunOptions& options, const Experiment& experiment) {
              : "";
 }
 
+/// The analysis knows a participant's group by the identifier.
+void check_number_of_group(const RunOptions& options, const protocols::Definition& d,
+                           const std::string& group) {
+  const std::string own = protocols::group_of(d.groups, options.subject);
+  if (own != group) {
+    throw InputError(fmt::format(
+        "--participant is {}, a number of {}, but {} is of {} by its identifier, which the "
+        "analysis goes by; allowed: a number of {}",
+        *options.participant, group.empty() ? "no group" : group, options.subject, own, own));
+  }
+}
+
 /// A session to which the participant's group does not come, or in which a tutor leads and there
 /// is none.
 void check_place(const RunOptions& options, const protocols::Definition& d) {
   const int session = options.session.value_or(1);
   const int number = options.participant.value_or(number_of_subject(options.subject));
   const std::string group = protocols::group_of(d.groups, number - 1);
+  if (options.participant && d.groups.size() > 1 && !options.pilot) {
+    check_number_of_group(options, d, group);
+  }
   if (!options.pilot && !d.comes(session, group)) {
     throw InputError(
         fmt::format("{}: session {} is for {}, and {} is of {}; choose another "

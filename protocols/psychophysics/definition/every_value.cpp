@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -19,7 +22,8 @@
 namespace haptrial::protocols {
 namespace {
 
-constexpr std::size_t kMostCombinations = 256;
+constexpr std::size_t kMostAnswers = 256;                      // combinations of answers
+constexpr std::size_t kMostValues = 4096;                      // combinations of values of a block
 constexpr double kLeastObject = 0.0005, kLargestObject = 2.0;  // the diagonal of its box [m]
 
 std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
@@ -30,7 +34,16 @@ std::string words_of(const TrialsDefinition& d, const TrialValues& values) {
   for (const GivenValue& value : values.values) {
     words += fmt::format(", {} = {}", value.name, value.formula);
   }
-  return words;
+  if (d.groups.size() > 1) {
+    words += fmt::format(", group {}", values.group);
+  }
+  const auto add = [&words](const char* name, int number) {
+    words += number > 1 ? fmt::format(", {} {}", name, number) : "";
+  };
+  add("session", values.session);
+  add("participant", values.participant);
+  add("trial", values.trial);
+  return words + (values.probe.empty() ? "" : fmt::format(", with the probe {}", values.probe));
 }
 
 /// The key that bounds an arm.
@@ -130,7 +143,7 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
   }
   std::size_t combinations = 1;
   for (const TrialQuestion& question : d.questions) {
-    combinations = std::min(kMostCombinations, combinations * values_of(question).size());
+    combinations = std::min(kMostAnswers, combinations * values_of(question).size());
   }
   for (std::size_t c = 0; c < combinations; ++c) {
     std::string answers;
@@ -158,70 +171,103 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
   }
 }
 
-/// @param first  bodies that give way are checked, and rigid ones described
-/// @returns words about rigid bodies
-std::vector<std::string> present_once(const TrialsDefinition& d, const TrialValues& values,
-                                      bool first, HandleReport& handle, PictureReport& picture,
-                                      LeadReport& lead) {
-  std::vector<std::string> bodies;
-  Table root = d.root();
-  const std::unique_ptr<Names> names = read_names(root, d);
+/// Goes through the values that the trials of a definition may have.
+class EveryValue {
+ public:
+  explicit EveryValue(TrialsDefinition& definition)
+      : d_(definition), handle_(definition), picture_(definition), lead_(definition) {}
+
+  HandleText check();
+
+ private:
+  /// Something that differs between the trials of a block, and sets its part of their values.
+  struct Dimension {
+    std::size_t size;
+    std::function<void(std::size_t, TrialValues&)> set;
+  };
+
+  void check_block(std::size_t block);
+  void present(const TrialValues& values);
+  void present_interval(Table& root, Names& names, std::size_t place);
+  void present_all(std::size_t block, const std::vector<Dimension>& dimensions);
+  std::vector<Dimension> levels_of(std::size_t block) const;
+  std::vector<Dimension> places_of(std::size_t block) const;
+  std::vector<std::string> needs_of(std::size_t block, const TrialValues& values);
+
+  TrialsDefinition& d_;
+  HandleReport handle_;
+  PictureReport picture_;
+  LeadReport lead_;
+  bool first_{true};                 // nothing was presented yet
+  std::vector<std::string> bodies_;  // words about rigid ones
+  std::vector<std::string> cut_;     // sentences on blocks that have too many combinations
+  std::set<std::string> read_;       // names that the block's values depend on
+};
+
+constexpr const char* kPlaces[] = {"group", "session", "participant", "trial"};
+
+void EveryValue::present_interval(Table& root, Names& names, std::size_t place) {
+  Presented presented = read_presented(root, names, d_, nullptr);
+  root.check();
+  scene::Scene(presented.fields, d_.rate);
+  check_forces(d_, presented);
+  check_objects(d_, presented.fields);
+  check_reach(d_, presented);
+  handle_.add(presented);
+  picture_.add(presented);
+  lead_.add(presented);
+  prepare_moving_bodies(presented.fields, d_.rate);
+  if (std::exchange(first_, false) && place == 0) {
+    check_bodies(presented.fields);
+    bodies_ = words_of_rigid_objects(presented.fields, d_.rate, d_.hand.damping);
+  }
+}
+
+void EveryValue::present(const TrialValues& values) {
+  Table root = d_.root();
+  const std::unique_ptr<Names> names = read_names(root, d_);
   try {
-    for (std::size_t place = 0; place < d.intervals.size(); ++place) {
-      give(*names, d, values);
-      give_interval(*names, d.intervals[values.intervals[place]], place);
-      Presented presented = read_presented(root, *names, d, nullptr);
-      root.check();
-      scene::Scene(presented.fields, d.rate);
-      check_forces(d, presented);
-      check_objects(d, presented.fields);
-      check_reach(d, presented);
-      handle.add(presented);
-      picture.add(presented);
-      lead.add(presented);
-      prepare_moving_bodies(presented.fields, d.rate);
-      if (first && place == 0) {
-        check_bodies(presented.fields);
-        bodies = words_of_rigid_objects(presented.fields, d.rate, d.hand.damping);
-      }
+    for (std::size_t place = 0; place < d_.intervals.size(); ++place) {
+      give(*names, d_, values);
+      give_interval(*names, d_.intervals[values.intervals[place]], place);
+      present_interval(root, *names, place);
     }
-    give(*names, d, values);
-    for (const TrialQuestion& question : d.questions) {
+    give(*names, d_, values);
+    for (const TrialQuestion& question : d_.questions) {
       if (!question.correct.empty()) {
         right_choice(*names, question);
       }
     }
-    check_answers(d, values, *names);
+    check_answers(d_, values, *names);
   } catch (const std::exception& error) {
     const std::string said = sentence_of(error);
     throw InputError(fmt::format("{}{}\n(with {})",
-                                 said.starts_with(d.file_name) ? "" : d.file_name + ": ", said,
-                                 words_of(d, values)));
+                                 said.starts_with(d_.file_name) ? "" : d_.file_name + ": ", said,
+                                 words_of(d_, values)));
   }
-  return bodies;
-}
-
-/// Whether a trial of a block cannot be presented without what a track of another one found.
-bool needs_threshold(const TrialsDefinition& d, TrialValues values, const Track& track) {
-  std::erase_if(values.thresholds, [&](const auto& each) { return each.first == track.name; });
-  HandleReport handle(d);
-  PictureReport picture(d);
-  LeadReport lead(d);
-  try {
-    present_once(d, values, false, handle, picture, lead);
-  } catch (const InputError&) {
-    return true;
+  for (const char* place : kPlaces) {
+    if (names->was_read(place)) {
+      read_.insert(place);
+    }
   }
-  return false;
+  for (const auto& [track, level] : values.thresholds) {
+    if (names->was_read(threshold_name(track))) {
+      read_.insert(threshold_name(track));
+    }
+  }
 }
 
 /// Blocks of a session that come before one in every order.
 std::vector<std::size_t> blocks_before(const TrialDesign& order, std::size_t block, int session) {
+  const std::vector<std::size_t> all = order.blocks_of(session);
+  const auto own = std::ranges::find(all, block);
   std::vector<std::size_t> before;
-  for (const std::size_t each : order.blocks_of(session)) {
-    const bool practice_first = order.blocks[each].practice && !order.blocks[block].practice;
-    if (practice_first || (order.order == Counterbalancing::kFixed && each < block)) {
-      before.push_back(each);
+  for (auto each = all.begin(); each != all.end(); ++each) {
+    const bool practice = order.blocks[*each].practice;
+    const bool practice_first = practice && !order.blocks[block].practice;
+    const bool listed_first = each < own && practice == order.blocks[block].practice;
+    if (practice_first || (order.order == Counterbalancing::kFixed && listed_first)) {
+      before.push_back(*each);
     }
   }
   return before;
@@ -248,41 +294,140 @@ void check_found_before(const TrialsDefinition& d, std::size_t block, const Trac
   }
 }
 
-/// The tracks of other blocks whose thresholds the block needs.
-std::vector<std::string> needs_of(const TrialsDefinition& d, std::size_t block,
-                                  const TrialValues& values) {
+/// The tracks of other blocks whose thresholds the block needs: without them it can't be presented.
+/// @param values  of a trial of the block, with all thresholds
+std::vector<std::string> EveryValue::needs_of(std::size_t block, const TrialValues& values) {
   std::vector<std::string> needs;
   for (const auto& [name, level] : values.thresholds) {
-    const Track& track = *std::ranges::find(d.tracks, name, &Track::name);
-    const bool named =
-        has_threshold_name(track) && d.text.find('$' + threshold_name(name)) != std::string::npos;
-    if (named && needs_threshold(d, values, track)) {
-      check_found_before(d, block, track);
+    if (!read_.contains(threshold_name(name))) {
+      continue;
+    }
+    TrialValues without = values;
+    std::erase_if(without.thresholds, [&](const auto& each) { return each.first == name; });
+    try {
+      EveryValue(d_).present(without);
+    } catch (const InputError&) {
+      check_found_before(d_, block, *std::ranges::find(d_.tracks, name, &Track::name));
       needs.push_back(name);
     }
   }
   return needs;
 }
 
-/// The values of one combination of a block's factors. @param high  levels at the upper ends of
-/// their ranges, else at the lower ones
-TrialValues corner_of(const TrialsDefinition& d, std::size_t block, std::size_t combination,
-                      bool high) {
+TrialValues first_values(const TrialsDefinition& d, std::size_t block) {
   TrialValues values;
   values.block = block;
+  values.values = d.order.blocks[block].values;
   values.group = d.groups.empty() ? "" : d.groups.front().name;
   for (std::size_t i = 0; i < d.intervals.size(); ++i) {
     values.intervals.push_back(i);
   }
-  give_corners(d, high, values);
-  const Block& given = d.order.blocks[block];
-  for (const Factor* factor : d.varied_in(given)) {
-    const std::size_t levels = factor->levels.size();
-    values.values.push_back({factor->name, factor->levels[combination % levels]});
-    combination /= levels;
-  }
-  values.values.insert(values.values.end(), given.values.begin(), given.values.end());
   return values;
+}
+
+/// The ends of the tracks' ranges, the block's factors and its probe.
+std::vector<EveryValue::Dimension> EveryValue::levels_of(std::size_t block) const {
+  const Block& given = d_.order.blocks[block];
+  std::vector<Dimension> all;
+  all.push_back({2, [this](std::size_t end, TrialValues& v) { give_corners(d_, end == 1, v); }});
+  for (const Factor* factor : d_.varied_in(given)) {
+    all.push_back({factor->levels.size(), [factor](std::size_t level, TrialValues& v) {
+                     v.values.push_back({factor->name, factor->levels[level]});
+                   }});
+  }
+  if (given.probe) {
+    all.push_back({2, [&probe = *given.probe](std::size_t with, TrialValues& v) {
+                     if (with == 1) {  // what it gives stands before all else
+                       v.probe = probe.name;
+                       v.values.insert(v.values.end(), probe.values.begin(), probe.values.end());
+                     }
+                   }});
+  }
+  return all;
+}
+
+/// Who takes the trial, and when, as far as the block's values depend on it.
+std::vector<EveryValue::Dimension> EveryValue::places_of(std::size_t block) const {
+  std::vector<Dimension> all;
+  if (read_.contains("participant")) {
+    all.push_back(
+        {static_cast<std::size_t>(d_.order.participants), [this](std::size_t i, TrialValues& v) {
+           v.participant = static_cast<int>(i) + 1;
+           v.group = group_of(d_.groups, static_cast<int>(i));
+         }});
+  } else if (read_.contains("group")) {
+    all.push_back(
+        {d_.groups.size(), [this](std::size_t i, TrialValues& v) { v.group = d_.groups[i].name; }});
+  }
+  if (read_.contains("session")) {
+    std::vector<int> sessions;
+    for (int session = 1; session <= d_.order.sessions; ++session) {
+      const std::vector<std::size_t> blocks = d_.order.blocks_of(session);
+      if (std::ranges::find(blocks, block) != blocks.end()) {
+        sessions.push_back(session);
+      }
+    }
+    all.push_back(
+        {sessions.size(), [sessions](std::size_t i, TrialValues& v) { v.session = sessions[i]; }});
+  }
+  if (read_.contains("trial")) {
+    const int most = d_.order.blocks[block].practice ? d_.practice_trials() : d_.most_trials();
+    all.push_back({static_cast<std::size_t>(std::max(1, most)),
+                   [](std::size_t i, TrialValues& v) { v.trial = static_cast<int>(i) + 1; }});
+  }
+  return all;
+}
+
+/// Every combination, or where these are too many so many of them that each value comes in some.
+void EveryValue::present_all(std::size_t block, const std::vector<Dimension>& dimensions) {
+  double all = 1.0;
+  std::size_t largest = kMostValues;
+  for (const Dimension& dimension : dimensions) {
+    all *= static_cast<double>(dimension.size);
+    largest = std::max(largest, dimension.size);
+  }
+  const bool cut = all > static_cast<double>(kMostValues);
+  const std::size_t count = cut ? largest : static_cast<std::size_t>(all);
+  for (std::size_t c = 0; c < count; ++c) {
+    TrialValues values = first_values(d_, block);
+    std::size_t rest = c;
+    for (const Dimension& dimension : dimensions) {
+      dimension.set((cut ? c : rest) % dimension.size, values);
+      rest /= dimension.size;
+    }
+    present(values);
+    if (c == 0 && d_.order.blocks[block].needs.empty()) {
+      d_.order.blocks[block].needs = needs_of(block, values);
+    }
+  }
+  if (cut) {
+    cut_.push_back(fmt::format(
+        "block {} has {:.0f} combinations of values, of which {} were checked, each value in some",
+        d_.order.blocks[block].name, all, count));
+  }
+}
+
+void EveryValue::check_block(std::size_t block) {
+  read_.clear();
+  const std::vector<Dimension> levels = levels_of(block);
+  present_all(block, levels);
+  std::vector<Dimension> all = places_of(block);
+  if (!all.empty()) {
+    all.insert(all.begin(), levels.begin(), levels.end());
+    present_all(block, all);
+  }
+}
+
+HandleText EveryValue::check() {
+  for (std::size_t block = 0; block < d_.order.blocks.size(); ++block) {
+    check_block(block);
+  }
+  HandleText words = handle_.words();
+  for (const auto& said : {picture_.warnings(), lead_.warnings(), cut_}) {
+    words.warnings.insert(words.warnings.end(), said.begin(), said.end());
+  }
+  words.lines.insert(words.lines.begin(), bodies_.begin(), bodies_.end());
+  return words;
 }
 
 }  // namespace
@@ -293,7 +438,12 @@ std::vector<std::string> costs_of_bodies(const TrialsDefinition& d) {
   }
   Table root = d.root();
   const std::unique_ptr<Names> names = read_names(root, d);
-  give(*names, d, corner_of(d, 0, 0, false));
+  TrialValues values = first_values(d, 0);
+  give_corners(d, false, values);
+  for (const Factor* factor : d.varied_in(d.order.blocks.front())) {
+    values.values.push_back({factor->name, factor->levels.front()});
+  }
+  give(*names, d, values);
   give_interval(*names, d.intervals.front(), 0);
   Presented presented = read_presented(root, *names, d, nullptr);
   root.check();
@@ -301,35 +451,6 @@ std::vector<std::string> costs_of_bodies(const TrialsDefinition& d) {
   return words_of_bodies(presented.fields, d.rate, d.hand.damping);
 }
 
-HandleText check_every_value(TrialsDefinition& d) {
-  std::vector<std::string> bodies;
-  HandleReport handle(d);
-  PictureReport picture(d);
-  LeadReport lead(d);
-  for (std::size_t block = 0; block < d.order.blocks.size(); ++block) {
-    const std::vector<const Factor*> varied = d.varied_in(d.order.blocks[block]);
-    std::size_t combinations = 1;
-    for (const Factor* factor : varied) {
-      combinations = std::min(kMostCombinations, combinations * factor->levels.size());
-    }
-    for (std::size_t c = 0; c < combinations; ++c) {
-      for (const bool high : {false, true}) {
-        const TrialValues values = corner_of(d, block, c, high);
-        if (c == 0 && !high) {
-          d.order.blocks[block].needs = needs_of(d, block, values);
-        }
-        const bool first = block == 0 && c == 0 && !high;
-        const std::vector<std::string> said = present_once(d, values, first, handle, picture, lead);
-        bodies.insert(bodies.end(), said.begin(), said.end());
-      }
-    }
-  }
-  HandleText words = handle.words();
-  for (const auto& said : {picture.warnings(), lead.warnings()}) {
-    words.warnings.insert(words.warnings.end(), said.begin(), said.end());
-  }
-  words.lines.insert(words.lines.begin(), bodies.begin(), bodies.end());
-  return words;
-}
+HandleText check_every_value(TrialsDefinition& d) { return EveryValue(d).check(); }
 
 }  // namespace haptrial::protocols

@@ -51,6 +51,8 @@ class Names final : public NumberSource {
   std::optional<std::string> word_of(double value) const { return labels_.word_of(value); }
   double number_of(std::string_view word) { return labels_.number_of(word); }
   bool knows(const std::string& name) const { return variables_.knows(name); }
+  /// Whether anything that was read so far depends on this name.
+  bool was_read(const std::string& name) const { return variables_.was_read(name); }
   /// Names of [variables], in alphabetical order.
   const std::vector<std::string>& stated() const { return stated_; }
   /// @throws InputError naming a place that is not there

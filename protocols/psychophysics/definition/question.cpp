@@ -253,7 +253,8 @@ void check_limits(Table& table, TrialQuestion& question) {
     table.reject("too_slow", fmt::format("{} s", question.too_slow),
                  fmt::format("above too_fast, {} s", question.too_fast));
   }
-  if (std::isfinite(question.too_slow) && question.timeout > 0.0 &&
+  const bool both_from_the_question = question.onset.empty();
+  if (std::isfinite(question.too_slow) && question.timeout > 0.0 && both_from_the_question &&
       question.timeout <= question.too_slow) {
     table.reject("too_slow", fmt::format("{} s", question.too_slow),
                  fmt::format("below timeout, {} s, which ends the trial", question.timeout));

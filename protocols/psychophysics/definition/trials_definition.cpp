@@ -194,6 +194,16 @@ std::vector<std::string> TrialsDefinition::warnings() const {
         "their own, which are presented where it gives none",
         script->file.filename().string()));
   }
+  for (const Measure& measure : measures) {
+    const double ramp = arms()[measure.device].limits.ramp_in;
+    if (measure.stage == 0 && measure.quantity == MeasuredQuantity::kForce && ramp > 0.0) {
+      all.push_back(fmt::format(
+          "measures.{} takes the force that the fields give in the first stage, while the device's "
+          "force ramps in for {:g} s (envelope.ramp_in), so that the hand feels less; let another "
+          "stage come first",
+          measure.name, ramp));
+    }
+  }
   for (const TrialQuestion& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {

@@ -103,6 +103,7 @@ std::map<std::string, double> Variables::known() const {
 
 double Variables::value(const std::string& name, std::vector<std::string>& way) const {
   refuse_circle(name, way);
+  read_.insert(name);
   const auto given = given_.find(name);
   if (given != given_.end() && !std::isnan(given->second)) {
     return given->second;

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "core/base/definition/expression.h"
@@ -35,6 +36,8 @@ class Variables {
   /// finite
   double value(const Expression& expression) const;
   double value(const std::string& name) const;
+  /// Whether a value() has taken this name's value so far.
+  bool was_read(const std::string& name) const { return read_.contains(name); }
 
  private:
   double value(const std::string& name, std::vector<std::string>& way) const;
@@ -43,6 +46,7 @@ class Variables {
 
   std::unordered_map<std::string, Expression> meanings_;
   std::unordered_map<std::string, double> given_;  // NaN: no value yet
+  mutable std::unordered_set<std::string> read_;
 };
 
 }  // namespace haptrial::protocols

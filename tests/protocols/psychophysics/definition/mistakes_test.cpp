@@ -206,6 +206,10 @@ TEST(TrialMistakesTest, LimitsOfReactionTimes) {
               Contains(HasSubstr("response.too_slow is 1 s; allowed: above too_fast, 2 s")));
   EXPECT_THAT(problems_of_trials(with_choices(two, "too_slow = 3.0\ntimeout = 2.0\n")),
               Contains(HasSubstr("response.too_slow is 3 s; allowed: below timeout, 2 s")));
+  // A reaction that counts from a stage may take longer than the time from the question on.
+  EXPECT_THAT(problems_of_trials(with_choices(
+                  two, "too_slow = 3.0\ntimeout = 2.0\nreaction_time_from = \"press\"\n")),
+              IsEmpty());
 }
 
 TEST(TrialMistakesTest, RepeatedTrialsThatMayBreakTheOrderGetAWarning) {
@@ -389,12 +393,29 @@ TEST(TrialMistakesTest, ARightAnswerThatIsNoChoice) {
               Contains(HasSubstr("is 3 (\"3\"), which is no choice")));
 }
 
-TEST(TrialMistakesTest, AStepOfLimitsThatRoundingWouldHold) {
+TEST(TrialMistakesTest, AStepThatRoundingWouldHold) {
   const std::string limits =
       "[procedure]\nkind = \"limits\"\nvariable = \"level\"\nrange = [310.0, 600.0]\nstep = 10.0\n";
   EXPECT_THAT(problems_of_trials(small_trials(limits + "resolution = 5.0\n")), IsEmpty());
   EXPECT_THAT(problems_of_trials(small_trials(limits + "resolution = 25.0\n")),
-              Contains(HasSubstr("procedure.step is 10; allowed: at least `resolution`, 25")));
+              Contains(HasSubstr("procedure.resolution is 25; allowed: less than 20, twice the "
+                                 "smallest step within the range")));
+  EXPECT_THAT(problems_of_trials(small_trials(limits + "resolution = 700.0\n")),
+              Contains(HasSubstr("procedure.resolution is 700; allowed: one with a multiple in the "
+                                 "range, 310 to 600")));
+  // On a scale of ratios the steps are smallest at the low end: there 0.01 decades are 7.2 N/m.
+  const std::string log = test::replaced(limits, "step = 10.0", "step = 0.01\nscale = \"log10\"");
+  EXPECT_THAT(problems_of_trials(small_trials(log + "resolution = 14.0\n")), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(log + "resolution = 15.0\n")),
+              Contains(HasSubstr("procedure.resolution is 15; allowed: less than 14.4")));
+}
+
+TEST(TrialMistakesTest, ListedLevelsThatRoundingTakesOutOfTheirRange) {
+  EXPECT_THAT(
+      problems_of_trials(small_trials("[procedure]\nkind = \"constant\"\nvariable = \"level\"\n"
+                                      "levels = [410.0, 420.0]\nrepetitions = 2\n"
+                                      "resolution = 50.0\n")),
+      Contains(HasSubstr("procedure.resolution is 50; allowed: one with a multiple in the range")));
 }
 
 TEST(TrialMistakesTest, TwoProceduresOnOneVariable) {
