@@ -177,10 +177,11 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
       shaking(vibration_, simulator_, done.contact, done.force.norm(), input.tool);
   const Eigen::Vector3d wanted =
       reading.shares.stiffness * (done.force + done.shaft + done.pushed + kept_out) + shake;
-  out.force = control::saturate(wanted, parameters_.force_limit);
+  out.most = parameters_.force_limit;
+  out.force = control::saturate(wanted, out.most);
   out.intent.push = reading.shares.stiffness * done.drag + shake;
   out.intent.stimulus = shake;
-  out.saturated = wanted.norm() > parameters_.force_limit;
+  out.saturated = wanted.norm() > out.most;
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(simulator_, input);
   seen.progress = static_cast<double>(ticks_) / static_cast<double>(time_limit_);
@@ -196,7 +197,8 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   if (two) {
     const Eigen::Vector3d on_tube =
         readings[1].shares.stiffness * (done.tube.force + done.tube.shaft - done.pushed);
-    second_.force = control::saturate(on_tube, parameters_.second->force_limit);
+    second_.most = parameters_.second->force_limit;
+    second_.force = control::saturate(on_tube, second_.most);
     rows_.log_second(input.tube);
   }
   rows_.log_tool(done.removed + done.cut, done.force);

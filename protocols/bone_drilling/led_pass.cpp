@@ -156,10 +156,11 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   const double share = readings[0].shares.stiffness;
   const Eigen::Vector3d wanted = share * (felt.force + felt.shaft) + shake;
   PassOutput out;
-  out.force = control::saturate(wanted, p_.parameters.force_limit);
+  out.most = p_.parameters.force_limit;
+  out.force = control::saturate(wanted, out.most);
   out.intent.push = share * felt.drag + shake;
   out.intent.stimulus = shake;
-  out.saturated = wanted.norm() > p_.parameters.force_limit;
+  out.saturated = wanted.norm() > out.most;
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(p_.simulator, own);
   seen.progress = std::min(

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/device/device.h"
@@ -35,6 +36,8 @@ class Readings {
 struct Drive {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the tool, in W [N]
   device::ForceIntent intent;                      // of the force
+  /// Limit of the protocol's own: not even with the guard's damper is the force larger [N]
+  double most{std::numeric_limits<double>::infinity()};
 };
 
 /// Output of one tick of a pass.
