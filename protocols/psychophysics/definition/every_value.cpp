@@ -241,8 +241,8 @@ void EveryValue::present(const TrialValues& values) {
     check_answers(d_, values, *names);
   } catch (const std::exception& error) {
     const std::string said = sentence_of(error);
-    throw InputError(fmt::format("{}{}\n(with {})",
-                                 said.starts_with(d_.file_name) ? "" : d_.file_name + ": ", said,
+    const bool says_where = said.find(d_.file_name + ":") != std::string::npos;
+    throw InputError(fmt::format("{}{}\n(with {})", says_where ? "" : d_.file_name + ": ", said,
                                  words_of(d_, values)));
   }
   for (const char* place : kPlaces) {

@@ -1,4 +1,5 @@
 #include "experiments/runner/session.h"
+#include "experiments/runner/session_opening.h"
 #include "experiments/studies/curve_analysis.h"
 
 #include <fmt/format.h>
@@ -273,6 +274,18 @@ TEST_F(SessionTest, RealClockKeepsTheSameRecordShape) {
     timed += row.compute_count;
   }
   EXPECT_EQ(timed, summary.ticks) << "every tick is in the compute histogram";
+}
+
+TEST(DeviceChangeTest, AnotherDeviceThanThatOfTheEarlierRunsIsSaid) {
+  SessionRequest request;
+  request.device.name = "haply";
+  record::SessionInfo before;
+  EXPECT_EQ(device_change(request, before), "") << "there is no earlier run";
+  before.device = "haply";
+  EXPECT_EQ(device_change(request, before), "");
+  before.device = "mouse";
+  EXPECT_EQ(device_change(request, before),
+            "goes on with the device haply, though it began with mouse, which its file names");
 }
 
 }  // namespace
