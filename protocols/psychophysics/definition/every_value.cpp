@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "core/base/definition/table.h"
@@ -189,10 +190,11 @@ class EveryValue {
   void check_block(std::size_t block);
   void present(const TrialValues& values);
   void present_interval(Table& root, Names& names, std::size_t place);
-  void present_all(std::size_t block, const std::vector<Dimension>& dimensions);
+  std::pair<std::size_t, double> visit(std::size_t block, const std::vector<Dimension>& dimensions,
+                                       const std::function<void(const TrialValues&)>& look) const;
   std::vector<Dimension> levels_of(std::size_t block) const;
   std::vector<Dimension> places_of(std::size_t block) const;
-  std::vector<std::string> needs_of(std::size_t block, const TrialValues& values);
+  bool needs(const std::string& track, std::size_t block, const std::vector<Dimension>& dimensions);
 
   TrialsDefinition& d_;
   HandleReport handle_;
@@ -294,26 +296,6 @@ void check_found_before(const TrialsDefinition& d, std::size_t block, const Trac
   }
 }
 
-/// The tracks of other blocks whose thresholds the block needs: without them it can't be presented.
-/// @param values  of a trial of the block, with all thresholds
-std::vector<std::string> EveryValue::needs_of(std::size_t block, const TrialValues& values) {
-  std::vector<std::string> needs;
-  for (const auto& [name, level] : values.thresholds) {
-    if (!read_.contains(threshold_name(name))) {
-      continue;
-    }
-    TrialValues without = values;
-    std::erase_if(without.thresholds, [&](const auto& each) { return each.first == name; });
-    try {
-      EveryValue(d_).present(without);
-    } catch (const InputError&) {
-      check_found_before(d_, block, *std::ranges::find(d_.tracks, name, &Track::name));
-      needs.push_back(name);
-    }
-  }
-  return needs;
-}
-
 TrialValues first_values(const TrialsDefinition& d, std::size_t block) {
   TrialValues values;
   values.block = block;
@@ -378,8 +360,12 @@ std::vector<EveryValue::Dimension> EveryValue::places_of(std::size_t block) cons
   return all;
 }
 
-/// Every combination, or where these are too many so many of them that each value comes in some.
-void EveryValue::present_all(std::size_t block, const std::vector<Dimension>& dimensions) {
+/// Visits every combination, or where these are too many so many of them that each value comes in
+/// some.
+/// @returns how many were visited, and how many there are
+std::pair<std::size_t, double> EveryValue::visit(
+    std::size_t block, const std::vector<Dimension>& dimensions,
+    const std::function<void(const TrialValues&)>& look) const {
   double all = 1.0;
   std::size_t largest = kMostValues;
   for (const Dimension& dimension : dimensions) {
@@ -395,26 +381,54 @@ void EveryValue::present_all(std::size_t block, const std::vector<Dimension>& di
       dimension.set((cut ? c : rest) % dimension.size, values);
       rest /= dimension.size;
     }
-    present(values);
-    if (c == 0 && d_.order.blocks[block].needs.empty()) {
-      d_.order.blocks[block].needs = needs_of(block, values);
+    look(values);
+  }
+  return {count, all};
+}
+
+/// Whether a trial of the block cannot be presented without what a track of another one found.
+bool EveryValue::needs(const std::string& track, std::size_t block,
+                       const std::vector<Dimension>& dimensions) {
+  bool needed = false;
+  EveryValue other(d_);
+  visit(block, dimensions, [&](const TrialValues& values) {
+    if (needed) {
+      return;
     }
-  }
-  if (cut) {
-    cut_.push_back(fmt::format(
-        "block {} has {:.0f} combinations of values, of which {} were checked, each value in some",
-        d_.order.blocks[block].name, all, count));
-  }
+    TrialValues without = values;
+    std::erase_if(without.thresholds, [&](const auto& each) { return each.first == track; });
+    try {
+      other.present(without);
+    } catch (const InputError&) {
+      needed = true;
+    }
+  });
+  return needed;
 }
 
 void EveryValue::check_block(std::size_t block) {
   read_.clear();
-  const std::vector<Dimension> levels = levels_of(block);
-  present_all(block, levels);
-  std::vector<Dimension> all = places_of(block);
-  if (!all.empty()) {
-    all.insert(all.begin(), levels.begin(), levels.end());
-    present_all(block, all);
+  Block& own = d_.order.blocks[block];
+  own.needs.clear();
+  std::vector<Dimension> all = levels_of(block);
+  const auto present_all = [&] {
+    return visit(block, all, [this](const TrialValues& values) { present(values); });
+  };
+  auto [tried, there_are] = present_all();
+  if (const std::vector<Dimension> places = places_of(block); !places.empty()) {
+    all.insert(all.end(), places.begin(), places.end());
+    std::tie(tried, there_are) = present_all();
+  }
+  if (static_cast<double>(tried) < there_are) {
+    cut_.push_back(fmt::format(
+        "block {} has {:.0f} combinations of values, of which {} were checked, each value in some",
+        own.name, there_are, tried));
+  }
+  for (const Track& track : d_.tracks) {
+    if (read_.contains(threshold_name(track.name)) && needs(track.name, block, all)) {
+      check_found_before(d_, block, track);
+      own.needs.push_back(track.name);
+    }
   }
 }
 

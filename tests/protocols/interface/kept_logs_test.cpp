@@ -33,7 +33,7 @@ class CountedRows final : public SessionFile {
 
 TEST(KeptLogsTest, ALogThatIsNamedOnceHasATableIsEmptiedAndCountsWhatItDropped) {
   realtime::BlockLog<record::ContactRow> contacts{8, 4};
-  realtime::BlockLog<int> entries{8, 4};
+  realtime::BlockLog<int> entries{2, 4};
   KeptLogs kept;
   kept.keep(contacts);
   kept.keep<int>(entries, record::table_of<record::CursorRow>(),

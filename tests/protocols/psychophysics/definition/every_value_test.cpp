@@ -116,5 +116,14 @@ TEST(EveryValueTest, ANeededThresholdIsKnownByItsFormula) {
   EXPECT_THAT(d.order.blocks[1].needs, testing::ElementsAre("stair"));
 }
 
+/// The first level of a factor may do without a threshold that another one needs.
+TEST(EveryValueTest, AThresholdThatOneLevelNeedsIsKnown) {
+  const std::string factor = "[factors]\nfound = [\"1.0\", \"$stair.threshold\"]\n";
+  TrialsDefinition d;
+  read_small(found_and_used(factor, "$found"), d);
+  check_every_value(d);
+  EXPECT_THAT(d.order.blocks[1].needs, testing::ElementsAre("stair"));
+}
+
 }  // namespace
 }  // namespace haptrial::protocols::every_value_test
