@@ -173,7 +173,7 @@ std::vector<CheckedRow> read_checklist_sheet(const std::filesystem::path& file,
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::string found(table.text(row, code));
     if (std::count(codes.begin(), codes.end(), found) == 0) {
-      table.refuse(row, code, "a code of the page");
+      table.refuse(row, code, "a code of this study's page");
     }
     const std::size_t n = item_at(table, row, item, checklist);
     CheckedRow& own = row_for(rows, {found, 1, rater, {}, {}}, checklist.items.size());

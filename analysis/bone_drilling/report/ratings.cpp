@@ -124,7 +124,12 @@ RatingKey blinded(std::vector<RatedItem> items, std::uint64_t seed, bool halves)
                                    item.procedure));
     }
   }
-  RandomStream order(seed, "rating order"), letters(seed, "rating codes");
+  Fnv1a study;
+  study.add(seed);
+  for (const RatedItem& item : items) {
+    study.add(item.fingerprint);
+  }
+  RandomStream order(study.value(), "rating order"), letters(study.value(), "rating codes");
   for (std::size_t i = items.size(); i > 1; --i) {
     std::swap(items[i - 1], items[order.below(i)]);
   }
@@ -220,7 +225,7 @@ std::vector<Rating> read_sheet(const std::filesystem::path& file, const RatingKe
     const auto entry = std::find_if(key.entries.begin(), key.entries.end(),
                                     [&](const KeyEntry& e) { return e.code == found; });
     if (entry == key.entries.end()) {
-      table.refuse(row, code, "a code of the sheet");
+      table.refuse(row, code, "a code of this study's sheet");
     }
     if (!seen.insert(found).second) {
       table.refuse(row, code, "each code once");

@@ -106,7 +106,7 @@ TEST(ChecklistSheetTest, IsReadAndMistakesAreSaid) {
   const auto refusal = [](const std::string& text) {
     return test::message_of([&] { sheet(text); });
   };
-  EXPECT_THAT(refusal("C,time,3\n"), HasSubstr("a code of the page"));
+  EXPECT_THAT(refusal("C,time,3\n"), HasSubstr("a code of this study's page"));
   EXPECT_THAT(refusal("A,tidy,3\n"), HasSubstr("an item of checklist \"Mastoidectomy\""));
   EXPECT_THAT(refusal("A,time,5\n"), HasSubstr("a whole number from 0 to 4"));
   EXPECT_THAT(refusal("A,time,3\nA,time,3\n"), HasSubstr("each item once for a code"));

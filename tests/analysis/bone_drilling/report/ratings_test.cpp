@@ -67,6 +67,25 @@ TEST_F(RatingsTest, CodesDoNotDependOnNames) {
   EXPECT_NE(rating_sheet(a), rating_sheet(blinded(items_of(plain), 8, false)));
 }
 
+// Two studies of the same seed share no code, and neither does a study to which a procedure was
+// added; a sheet of the one is refused by the other.
+TEST_F(RatingsTest, CodesAreThoseOfOneStudy) {
+  const std::vector<RatedItem> items = items_of({"S01", "S02"});
+  std::vector<RatedItem> changed = items, more = items;
+  ++changed[0].fingerprint;
+  more.push_back({"S03", 1, 17});
+  const RatingKey key = blinded(items, 7, false);
+  std::string filled = "code,score,comment\n";
+  for (const KeyEntry& entry : key.entries) {
+    filled += entry.code + ",3,\n";
+  }
+  EXPECT_EQ(read_sheet(file("own.csv", filled), key).size(), 4u);
+  for (const std::vector<RatedItem>& other : {changed, more}) {
+    EXPECT_THAT(complaint(filled, blinded(other, 7, false)),
+                HasSubstr("a code of this study's sheet"));
+  }
+}
+
 // Every procedure is as likely at every place: the mean place of the first over many seeds is the
 // middle (5 standard errors).
 TEST_F(RatingsTest, TheOrderIsShuffled) {
@@ -151,7 +170,7 @@ TEST_F(RatingsTest, EveryWrongLineHasItsSentence) {
   EXPECT_THAT(complaint(head + "AB34,4,\nAB34,4,\nCD67,1,\n", key_),
               AllOf(HasSubstr(":3:"), HasSubstr("AB34"), HasSubstr("each code once")));
   EXPECT_THAT(complaint(head + "AB34,4,\nXX99,4,\n", key_),
-              AllOf(HasSubstr(":3:"), HasSubstr("XX99"), HasSubstr("a code of the sheet")));
+              AllOf(HasSubstr(":3:"), HasSubstr("XX99"), HasSubstr("a code of this study's sheet")));
   for (const char* score : {"", "0", "6", "-1", "3.5", "nan", "four", "0x3", "4 5", "1e0"}) {
     EXPECT_THAT(complaint(head + "AB34," + score + ",\nCD67,1,\n", key_),
                 AllOf(HasSubstr(":2:"), HasSubstr("score"), HasSubstr("1, 2, 3, 4 or 5")))
