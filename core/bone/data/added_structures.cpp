@@ -12,8 +12,10 @@
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/bone/data/anatomy.h"
+#include "core/bone/data/losses.h"
 #include "core/bone/model/crop.h"
 #include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/mesh_volume.h"
 #include "core/geometry/volume/voxelize.h"
 
 namespace haptrial::bone {
@@ -79,8 +81,8 @@ std::uint8_t label_for(const Structure& structure, BoneModel& model) {
   return static_cast<std::uint8_t>(all.size() - 1);
 }
 
-std::size_t add_mesh(const MeshStructure& added, const Eigen::Affine3d& X_PB, BoneModel& model,
-                     const geometry::WorkReport& report) {
+void add_mesh(const MeshStructure& added, const std::optional<Eigen::AlignedBox3d>& asked,
+              const Eigen::Affine3d& X_PB, BoneModel& model, const geometry::WorkReport& report) {
   const geometry::Mesh mesh = mesh_in_bone(added, X_PB);
   Eigen::AlignedBox3d box;
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
@@ -88,10 +90,11 @@ std::size_t add_mesh(const MeshStructure& added, const Eigen::Affine3d& X_PB, Bo
   }
   const geometry::VoxelGrid part = grid_within(model.grid, box);
   std::size_t found = 0;
+  const Structure structure = structure_named(
+      added.name, static_cast<std::uint8_t>(model.structures.size() % 256));  // of its colour
   if (part.count() > 0) {
     const geometry::VoxelSolid solid = voxelize(mesh, part, geometry::fitting_rule(mesh), report);
-    const auto other = static_cast<std::uint8_t>(model.structures.size() % 256);  // of its colour
-    const std::uint8_t label = label_for(structure_named(added.name, other), model);
+    const std::uint8_t label = label_for(structure, model);
     const Eigen::Vector3i first =
         ((part.origin - model.grid.origin) / model.grid.spacing).array().round().cast<int>();
     std::size_t at = 0;
@@ -117,11 +120,15 @@ std::size_t add_mesh(const MeshStructure& added, const Eigen::Affine3d& X_PB, Bo
                     "axes (LPS or RAS), or choose smaller voxels",
                     added.file.string(), in_words(box), in_words(box_of(model.grid))));
   }
-  return found;
+  if (!asked || asked->contains(box)) {
+    note_loss(added.file.string(), structure, std::abs(geometry::signed_volume(mesh)),
+              static_cast<double>(found) * std::pow(model.grid.spacing, 3), model);
+  }
 }
 
 void add_segments(const std::string& file, const SourceVolume& segments,
-                  const std::vector<Structure>& structures, const Eigen::Affine3d& X_PB,
+                  const std::vector<Structure>& structures,
+                  const std::optional<Eigen::AlignedBox3d>& asked, const Eigen::Affine3d& X_PB,
                   BoneModel& model) {
   const std::array<std::uint8_t, 256> labels = labels_for(structures, model);
   std::array<bool, 256> plain{};
@@ -182,6 +189,12 @@ void add_segments(const std::string& file, const SourceVolume& segments,
                     "segmentation of this scan",
                     file, in_words(box), in_words(box_of(grid))));
   }
+  const LabelVolumes in_file = volumes_of(segments.values, head, asked, X_PB);
+  LabelVolumes before{};
+  for (std::size_t segment = 1; segment < labels.size(); ++segment) {
+    before[labels[segment]] += in_file[segment];
+  }
+  note_losses(file, before, model);
 }
 
 }  // namespace haptrial::bone

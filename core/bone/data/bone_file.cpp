@@ -36,6 +36,9 @@ std::string bone_head(const BoneModel& model) {
   // The grid is written in metres and to the last bit, which millimetres are not.
   head += fmt::format("haptrial_grid:={} {} {} {}\n", grid.spacing, grid.origin.x(),
                       grid.origin.y(), grid.origin.z());
+  for (std::size_t n = 0; n < model.notes.size(); ++n) {
+    head += fmt::format("{}{:03}:={}\n", kNoteKey, n, one_line(model.notes[n]));
+  }
   for (const auto& [key, value] : keys_of(model.structures)) {
     head += fmt::format("{}:={}\n", key, value);
   }

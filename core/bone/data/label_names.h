@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/bone/model/bone_model.h"
@@ -31,6 +32,9 @@ struct LabelTable {
 ///
 /// @throws InputError
 LabelTable read_label_table(const std::filesystem::path& file);
+
+/// A saved bone's keys of notes begin with it.
+inline constexpr std::string_view kNoteKey = "haptrial_note_";
 
 /// A text as it can stand in a NRRD header's line: neither line ends nor backslashes.
 std::string one_line(std::string text);

@@ -15,6 +15,7 @@
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
+#include "core/bone/data/losses.h"
 #include "core/bone/data/resample.h"
 #include "core/bone/data/segments.h"
 #include "core/bone/data/volume_source.h"
@@ -88,6 +89,15 @@ void check_room(const Import& job, const geometry::VoxelGrid& grid, double bytes
 
 /// Whether the volume's own axes become those of the bone.
 bool keeps_axes(const Pose& pose) { return pose.turn < kSmallTurn && pose.skew <= kSmallShift; }
+
+/// Transform from B to the patient's axes, LPS.
+Eigen::Affine3d patient_frame(const UprightVolume& volume) {
+  const VoxelMap map = map_to(volume, keeps_axes(pose_of(volume)));
+  Eigen::Affine3d X_PB;
+  X_PB.linear() = volume.steps * map.turn;
+  X_PB.translation() = volume.origin + volume.steps * map.offset;
+  return X_PB;
+}
 
 /// How the volume lies, if it does not lie along the patient's axes.
 std::string lie_of(const Pose& pose) {
@@ -167,8 +177,9 @@ std::vector<std::uint8_t> labels_of(const Import& job, std::span<const float> va
   return labels;
 }
 
-/// Every label that is used gets a structure, named or not.
-void name_labels(const Import& job, std::vector<Structure> structures, BoneModel& model) {
+/// Every label that is used, in the bone or before in its file, gets a structure, named or not.
+void name_labels(const Import& job, std::vector<Structure> structures, const LabelVolumes& before,
+                 BoneModel& model) {
   if (!job.options.label_file.empty()) {
     LabelTable table = read_label_table(job.options.label_file);
     for (std::size_t label = 1; label < structures.size(); ++label) {
@@ -188,6 +199,9 @@ void name_labels(const Import& job, std::vector<Structure> structures, BoneModel
   std::array<bool, 256> used{};
   for (const std::uint8_t label : model.labels) {
     used[label] = true;
+  }
+  for (std::size_t label = 1; label < used.size(); ++label) {
+    used[label] = used[label] || before[label] > 0.0;
   }
   for (std::size_t label = 1; label < used.size(); ++label) {
     if (!used[label]) {
@@ -246,11 +260,18 @@ BoneModel labelled_bone(const Import& job, const VolumeHead& head, const Upright
   BoneModel model;
   model.grid = plan.grid;
   model.labels = labels_of(job, volume.components[0]);
+  LabelVolumes before{};
   if (!plan.as_it_is) {
+    VolumeHead lattice;
+    lattice.size = volume.size;
+    lattice.steps = volume.steps;
+    lattice.origin = volume.origin;
+    before = volumes_of(volume.components[0], lattice, job.options.crop, patient_frame(volume));
     model.labels = resample_labels(model.labels, volume, plan.grid, plan.own_axes, job.report);
   }
   model.source = fmt::format("{} ({}), labels {}", job.name, head.format, plan.sentence);
-  name_labels(job, structures_in(head.keys), model);
+  name_labels(job, structures_in(head.keys), before, model);
+  note_losses(job.name, before, model);
   return model;
 }
 
@@ -323,7 +344,7 @@ BoneModel grey_bone(const Import& job, const VolumeHead& head, const UprightVolu
   model.source =
       fmt::format("{} ({}), bone from {:.6g}{} on and dense at {:.6g}, {}", job.name, head.format,
                   levels.threshold, head.hounsfield ? " HU" : "", levels.dense, plan.sentence);
-  name_labels(job, {Structure{}, structure_named("bone", 1)}, model);
+  name_labels(job, {Structure{}, structure_named("bone", 1)}, {}, model);
   return model;
 }
 
@@ -352,6 +373,11 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
   if (same && source != head.keys.end()) {
     model.source = source->second;
   }
+  for (const auto& [key, note] : head.keys) {
+    if (key.starts_with(kNoteKey)) {
+      model.notes.push_back(note);
+    }
+  }
   if (volume.components.size() < 2) {
     return model;
   }
@@ -369,15 +395,6 @@ BoneModel saved_bone(const Import& job, const VolumeHead& head, const UprightVol
     model.density[i] = static_cast<float>(std::clamp(std::round(values[i]), 1.0F, 255.0F) / 255.0F);
   }
   return model;
-}
-
-/// Transform from B to the patient's axes, LPS.
-Eigen::Affine3d patient_frame(const UprightVolume& volume) {
-  const VoxelMap map = map_to(volume, keeps_axes(pose_of(volume)));
-  Eigen::Affine3d X_PB;
-  X_PB.linear() = volume.steps * map.turn;
-  X_PB.translation() = volume.origin + volume.steps * map.offset;
-  return X_PB;
 }
 
 /// Adds the structures of the files beside the scan.
@@ -400,11 +417,12 @@ void add_structures(const Import& job, const Eigen::Affine3d& X_PB, BoneModel& m
       }
     }
     labels_of(job, segments.values);
-    add_segments(name, segments, structures, X_PB, model);
+    add_segments(name, segments, structures, job.options.crop, X_PB, model);
+    model.notes.insert(model.notes.end(), segments.head.notes.begin(), segments.head.notes.end());
     model.source += fmt::format("; segments of {}", job.options.segments.filename().string());
   }
   for (const MeshStructure& one : job.options.meshes) {
-    add_mesh(one, X_PB, model, job.report);
+    add_mesh(one, job.options.crop, X_PB, model, job.report);
     model.source += fmt::format("; {} of {}", one.name, one.file.filename().string());
   }
 }
@@ -433,6 +451,7 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
                     : kind == VolumeKind::kLabels ? labelled_bone(job, head, volume)
                                                   : grey_bone(job, head, volume);
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
+  model.notes.insert(model.notes.begin(), head.notes.begin(), head.notes.end());
   add_structures(job, patient_frame(volume), model);
   leave_out(job, model);
   if (options.mirror) {

@@ -63,6 +63,7 @@ VolumeHead nifti_head(const std::string& name, const nifti_image& image) {
   } else if (image.qform_code > 0) {
     take_nifti_places(image.qto_xyz, unit, head);
   } else {
+    head.notes.push_back(assumed_orientation(name, "right-anterior-superior"));
     head.steps = (unit * Eigen::Vector3d(-image.dx, -image.dy, image.dz)).asDiagonal();
   }
   head.labels = image.intent_code == NIFTI_INTENT_LABEL;

@@ -70,6 +70,18 @@ double metres(const std::string& name, const char* unit) {
   return known->second;
 }
 
+/// Whether the file says how its axes lie in the patient.
+bool says_orientation(const Nrrd& nrrd) {
+  switch (nrrd.space) {
+    case nrrdSpaceLeftPosteriorSuperior:
+    case nrrdSpaceRightAnteriorSuperior:
+    case nrrdSpaceLeftAnteriorSuperior:
+      return true;
+    default:
+      return false;
+  }
+}
+
 /// Signs of x and y from the file's space to LPS.
 std::optional<Eigen::Vector3d> to_lps(int space) {
   switch (space) {
@@ -100,6 +112,9 @@ void take_places(const std::string& name, const Nrrd& nrrd, unsigned first, Volu
         fmt::format("{}: its space is '{}' with {} axes; allowed: left-posterior-superior, "
                     "right-anterior-superior, left-anterior-superior",
                     name, airEnumStr(nrrdSpace, nrrd.space), nrrd.spaceDim));
+  }
+  if (!says_orientation(nrrd)) {
+    head.notes.push_back(assumed_orientation(name, "left-posterior-superior"));
   }
   for (unsigned axis = 0; axis < 3; ++axis) {
     const NrrdAxisInfo& info = nrrd.axis[first + axis];
@@ -133,12 +148,12 @@ void take_keys(const Nrrd& nrrd, VolumeHead& head) {
     nrrdKeyValueIndex(&nrrd, &key, &value, i);
     if (key != nullptr && value != nullptr) {
       head.keys[key] = value;
-      head.labels = head.labels || std::string(key).starts_with("label_") ||
-                    std::string(key).starts_with("Segment0_");
+      head.labels = head.labels || std::string(key).starts_with("label_");
     }
     std::free(key);  // NOLINT: teem takes them from malloc
     std::free(value);
   }
+  head.labels = head.labels || names_segments(head.keys);
 }
 
 VolumeHead head_of(const std::string& name, const Nrrd& nrrd) {

@@ -39,7 +39,8 @@ json told(const VolumeHead& head) {
           {"labels", head.labels},
           {"hounsfield", head.hounsfield},
           {"keys", head.keys},
-          {"format", head.format}};
+          {"format", head.format},
+          {"notes", head.notes}};
 }
 
 VolumeHead heard(const json& words) {
@@ -54,6 +55,7 @@ VolumeHead heard(const json& words) {
   words.at("hounsfield").get_to(head.hounsfield);
   words.at("keys").get_to(head.keys);
   words.at("format").get_to(head.format);
+  words.at("notes").get_to(head.notes);
   return head;
 }
 
@@ -127,6 +129,17 @@ BigArray<float> fetch(const std::string& name, int memory, std::size_t count) {
   return values;
 }
 
+SourceVolume with_missing_noted(const std::string& name, SourceVolume volume) {
+  const auto missing =
+      std::ranges::count_if(volume.values, [](float value) { return !std::isfinite(value); });
+  if (missing > 0) {
+    volume.head.notes.push_back(
+        fmt::format("{} of the {} values of {} are not finite numbers; they are taken as the lowest",
+                    missing, volume.values.size(), name));
+  }
+  return volume;
+}
+
 /// @throws InputError where no value is finite.
 void make_finite(const std::string& name, BigArray<float>& values) {
   float lowest = std::numeric_limits<float>::max();
@@ -178,6 +191,13 @@ void check_head(const std::string& name, const VolumeHead& head, const Room& roo
        kBytes * static_cast<double>(head.count()) * head.components);
 }
 
+std::string assumed_orientation(const std::string& name, const char* assumed) {
+  return fmt::format(
+      "{} does not say how its axes lie in the patient; {} is assumed, and left and right may be "
+      "exchanged",
+      name, assumed);
+}
+
 SourceVolume read_here(const fs::path& path, const Room& room) {
   if (fs::is_directory(path)) {
     return read_dicom(path, room);
@@ -188,10 +208,10 @@ SourceVolume read_here(const fs::path& path, const Room& room) {
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const auto ends = [&](const char* ending) { return name.ends_with(ending); };
   if (ends(".nrrd") || ends(".nhdr")) {
-    return read_nrrd(path, room);
+    return with_missing_noted(path.string(), read_nrrd(path, room));
   }
   if (ends(".nii") || ends(".nii.gz")) {
-    return read_nifti(path, room);
+    return with_missing_noted(path.string(), read_nifti(path, room));
   }
   if (ends(".dcm")) {
     return read_dicom(path, room);

@@ -10,6 +10,9 @@ namespace haptrial::bone {
 /// End of the format's name for a file that names no unit of length.
 inline constexpr const char* kNoUnit = ", without a unit of length, so in mm";
 
+/// The note of a file that does not say how its axes lie in the patient.
+std::string assumed_orientation(const std::string& name, const char* assumed);
+
 SourceVolume read_nrrd(const std::filesystem::path& file, const Room& room);
 SourceVolume read_nifti(const std::filesystem::path& file, const Room& room);
 /// A folder with one series, or one file with many frames.

@@ -26,6 +26,7 @@ struct VolumeHead {
   bool hounsfield{false};                              // likewise
   std::map<std::string, std::string> keys;             // key/values of the file
   std::string format;                                  // "NRRD", "NIfTI", "DICOM, 240 slices"
+  std::vector<std::string> notes;                      // as of BoneModel
 
   std::size_t count() const {
     return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
@@ -45,7 +46,7 @@ void check_system_memory(const std::string& what, double bytes);
 
 /// Reads a volume in a process of its own, so that a library which crashes, hangs or takes all
 /// memory over a damaged file costs a sentence. Values that are not finite become the smallest
-/// finite one.
+/// finite one; a note says how many, but for the padding of DICOM.
 /// @throws InputError, RunError, geometry::Cancelled
 SourceVolume read_volume(const std::filesystem::path& file, const Room& room,
                          const geometry::WorkReport& report);

@@ -29,6 +29,8 @@ struct BoneModel {
   std::vector<std::uint8_t> labels;   // grid.count(); 0: nothing there, else of `structures`
   std::vector<float> density;         // grid.count(), from 0 to 1; empty: 1 wherever a label is
   std::vector<Structure> structures;  // by label; the first stands for nothing
+  /// What was lost of its files, or assumed where they say nothing: sentences to warn with.
+  std::vector<std::string> notes;
 };
 
 /// Whether any voxel is of a vital structure; without, nobody knows what was spared.

@@ -163,7 +163,7 @@ void print_bone(const bone::BoneModel& model) {
   fmt::print("{:5} {:28} {:10} {:11.1f}\n", "", "all", summary.voxels, 1e9 * summary.volume);
 }
 
-void print_unknown(const bone::BoneModel& model) {
+void print_warnings(const bone::BoneModel& model) {
   for (const bone::StructureSummary& one : bone::summary_of(model).structures) {
     const bone::Structure& structure = model.structures[one.label];
     if (!bone::is_known_structure(structure.name)) {
@@ -175,6 +175,9 @@ void print_unknown(const bone::BoneModel& model) {
   }
   if (!bone::has_vital_structures(model)) {
     fmt::print("WARNING: vital structures are unknown: no injury can be told in this bone\n");
+  }
+  for (const std::string& note : model.notes) {
+    fmt::print("WARNING: {}\n", note);
   }
 }
 

@@ -57,8 +57,9 @@ bone::LoadOptions load_options(const BoneInput& options, const MemoryBudget& bud
 
 /// A bone's grid, side and structures, on standard output.
 void print_bone(const bone::BoneModel& model);
-/// Names that say nothing to the program, and what it could not tell of such a bone.
-void print_unknown(const bone::BoneModel& model);
+/// Warnings about a bone: names that say nothing to the program, what was lost of its files or
+/// assumed, and what cannot be told of such a bone.
+void print_warnings(const bone::BoneModel& model);
 
 void save_new_bone(const BoneOutput& options, const bone::BoneModel& model);
 

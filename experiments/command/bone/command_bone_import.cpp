@@ -155,7 +155,7 @@ int bone_import(const BoneImportOptions& options) {
   bone::BoneModel model = bone::load_bone(options.in, load, work.report());
   tidy(options, model);
   print_bone(model);
-  print_unknown(model);
+  print_warnings(model);
   save_new_bone(options, model);
   return 0;
 }

@@ -12,7 +12,7 @@ int bone_info(const BoneInput& options) {
   ShownWork work("reading");
   const bone::BoneModel model = bone::load_bone(options.in, load, work.report());
   print_bone(model);
-  print_unknown(model);
+  print_warnings(model);
   return 0;
 }
 

@@ -114,11 +114,20 @@ void warn_of_hints(const BoneDefinition& d, std::vector<std::string>& warnings) 
   }
 }
 
+void warn_of_bones(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  for (const auto& bone : d.bones) {
+    for (const std::string& note : bone->notes) {
+      warnings.push_back(fmt::format("bone {}: {}", bone->name, note));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> BoneDefinition::warnings() const {
   const BoneDefinition& d = *this;
   std::vector<std::string> warnings;
+  warn_of_bones(d, warnings);
   warn_of_contact(d, warnings);
   warn_of_vibration(d, warnings);
   warn_of_devices(d, warnings);

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/bone/data/bone_file.h"
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
@@ -21,7 +22,9 @@ namespace {
 
 using test::PlainVolume;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::Not;
 
 class ImportTest : public ::testing::Test {
@@ -286,6 +289,53 @@ TEST_F(ImportTest, AVolumeWithoutAFiniteValueIsRefused) {
     bytes.append(reinterpret_cast<const char*>(&none), sizeof none);
   }
   EXPECT_THAT(refusal("v.nrrd", bytes), HasSubstr("none of its values is a finite number"));
+}
+
+TEST_F(ImportTest, ValuesThatAreNoNumbersAreCounted) {
+  PlainVolume volume({4, 4, 4});
+  std::string bytes = nrrd_of(volume);
+  bytes.replace(bytes.find("int16"), 5, "float");
+  bytes.resize(bytes.size() - 64 * sizeof(std::int16_t));
+  for (int i = 0; i < 64; ++i) {
+    const float value = i % 4 == 0 ? NAN : i < 32 ? -1000.0F : 1200.0F;
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  EXPECT_THAT(load("v.nrrd", bytes).notes,
+              ElementsAre(HasSubstr("16 of the 64 values of")));
+}
+
+// A nerve of one voxel in a block of bone is lost in voxels of four, and the bone is not.
+TEST_F(ImportTest, StructuresLostInCoarseVoxelsAreSaidAndKeptWithTheBone) {
+  PlainVolume volume({16, 16, 16});
+  volume.more = "label_01:=Bone\nlabel_07:=Facial_Nerve\n";
+  volume.fill([](const Eigen::Vector3d&) { return 1; });
+  for (int k = 0; k < 16; ++k) {
+    volume.at(8, 8, k) = 7;
+  }
+  EXPECT_THAT(load("v.nrrd", nrrd_of(volume)).notes, IsEmpty());
+  LoadOptions coarse;
+  coarse.spacing = 4e-3;
+  const BoneModel model = load("v.nrrd", nrrd_of(volume), coarse);
+  const std::string note = "facial nerve, a vital structure, is lost: 16.0 mm3 in " +
+                           (folder_ / "v.nrrd").string() + ", none here";
+  EXPECT_THAT(model.notes, ElementsAre(note));
+  save_bone(folder_ / "b.nrrd", model);
+  EXPECT_THAT(load_bone(folder_ / "b.nrrd").notes, ElementsAre(note));
+}
+
+TEST_F(ImportTest, AnOrientationThatAFileDoesNotSayIsSaid) {
+  PlainVolume volume({4, 4, 4});
+  volume.at(1, 2, 3) = 1;
+  std::string bytes = nrrd_of(volume);
+  EXPECT_THAT(load("v.nrrd", bytes).notes, IsEmpty());
+  const std::string space = "space: left-posterior-superior";
+  bytes.replace(bytes.find(space), space.size(), "space dimension: 3");
+  EXPECT_THAT(load("v.nrrd", bytes).notes,
+              ElementsAre(HasSubstr("left-posterior-superior is assumed")));
+  std::string nifti = nifti_of(volume);
+  EXPECT_THAT(load("v.nii", nifti).notes, IsEmpty());
+  EXPECT_THAT(load("v.nii", nifti_of(volume, false)).notes,
+              ElementsAre(HasSubstr("right-anterior-superior is assumed")));
 }
 
 TEST_F(ImportTest, AVolumeWithoutAUnitIsInMillimetresAndSaysSo) {
