@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "core/base/error.h"
@@ -13,46 +16,61 @@
 namespace haptrial::bone {
 namespace {
 
-constexpr int kMostSegments = 255;  // labels are bytes
+constexpr std::size_t kMostSegments = 255;  // labels are bytes
 
 struct Segment {
+  int number{0};  // in its keys
   std::size_t layer{0};
   std::uint8_t value{0};  // in its layer
   bool plain{false};      // bone without a name of its own
 };
 
-/// A whole number from 0 to 255, or -1.
-int number_in(const std::string& words) {
+/// A whole number from 0 on, or -1.
+int number_in(std::string_view words) {
   int number = -1;
   const auto [end, error] = std::from_chars(words.data(), words.data() + words.size(), number);
-  return error == std::errc() && end == words.data() + words.size() && number >= 0 &&
-                 number <= kMostSegments
-             ? number
-             : -1;
+  return error == std::errc() && end == words.data() + words.size() && number >= 0 ? number : -1;
 }
 
 std::string key_of(int segment, const char* what) {
   return fmt::format("Segment{}_{}", segment, what);
 }
 
+/// The number of a key "SegmentN_LabelValue"; -1 for any other key.
+int segment_of(const std::string& key) {
+  constexpr std::string_view kBefore = "Segment", kAfter = "_LabelValue";
+  if (!key.starts_with(kBefore) || !key.ends_with(kAfter)) {
+    return -1;
+  }
+  return number_in(key.substr(kBefore.size(), key.size() - kBefore.size() - kAfter.size()));
+}
+
+/// In the order of their numbers, which has gaps where a segment was deleted.
 std::vector<Segment> segments_in(const std::string& name, const VolumeHead& head) {
   const auto value = [&](int segment, const char* what) {
     const auto found = head.keys.find(key_of(segment, what));
     return found == head.keys.end() ? std::string() : found->second;
   };
+  std::set<int> numbers;
+  for (const auto& [key, words] : head.keys) {
+    if (const int number = segment_of(key); number >= 0) {
+      numbers.insert(number);
+    }
+  }
   std::vector<Segment> segments;
-  for (int number = 0; head.keys.contains(key_of(number, "LabelValue")); ++number) {
+  for (const int number : numbers) {
     const int label = number_in(value(number, "LabelValue"));
     const std::string words = value(number, "Layer");
     const int layer = words.empty() ? 0 : number_in(words);
-    if (label < 1 || layer < 0 || layer >= head.components || number >= kMostSegments) {
+    if (label < 1 || label > static_cast<int>(kMostSegments) || layer < 0 || layer >= head.components ||
+        segments.size() >= kMostSegments) {
       throw InputError(fmt::format(
           "{}: segment {} has value '{}' in layer '{}'; allowed: values 1 to 255 in "
           "layers 0 to {}, {} segments at most",
           name, number, value(number, "LabelValue"), words, head.components - 1, kMostSegments));
     }
-    segments.push_back({static_cast<std::size_t>(layer), static_cast<std::uint8_t>(label),
-                        structure_named(value(number, "Name"), 0).name == "bone"});
+    segments.push_back({number, static_cast<std::size_t>(layer), static_cast<std::uint8_t>(label),
+                        structure_named(value(number, "Name"), 0).name == kPlainBone});
   }
   return segments;
 }
@@ -60,7 +78,7 @@ std::vector<Segment> segments_in(const std::string& name, const VolumeHead& head
 }  // namespace
 
 bool names_segments(const std::map<std::string, std::string>& keys) {
-  return keys.contains(key_of(0, "LabelValue"));
+  return std::ranges::any_of(keys, [](const auto& key) { return segment_of(key.first) >= 0; });
 }
 
 void join_layers(const std::string& name, SourceVolume& source) {
@@ -94,9 +112,9 @@ void join_layers(const std::string& name, SourceVolume& source) {
     shared += held > 1 ? 1 : 0;
     joined[at] = best;
   }
-  for (int s = 0; s < static_cast<int>(segments.size()); ++s) {
-    head.keys[key_of(s, "LabelValue")] = fmt::format("{}", s + 1);
-    head.keys[key_of(s, "Layer")] = fmt::format("{}", 0);
+  for (std::size_t s = 0; s < segments.size(); ++s) {
+    head.keys[key_of(segments[s].number, "LabelValue")] = fmt::format("{}", s + 1);
+    head.keys[key_of(segments[s].number, "Layer")] = "0";
   }
   head.format += fmt::format(", {} layers", head.components);
   if (shared > 0) {

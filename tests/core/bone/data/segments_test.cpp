@@ -22,7 +22,10 @@ namespace {
 
 using test::PlainVolume;
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
 
 /// A .seg.nrrd as 3D Slicer 5 writes it: layers fastest, then the voxels of 1 mm.
 std::string layered(std::array<int, 3> size, const std::vector<std::vector<std::uint8_t>>& layers,
@@ -83,6 +86,18 @@ TEST_F(SegmentsTest, LayersOfAnyNumberBecomeOneLabelPerVoxel) {
   EXPECT_THAT(model.source, HasSubstr("3 layers that share 2 voxels"));
 }
 
+// 3D Slicer leaves a gap in the numbers where a segment was deleted.
+TEST_F(SegmentsTest, ADeletedSegmentShiftsNoName) {
+  const std::string keys = segment(0, "Bone", 1, 0) + segment(2, "Facial_Nerve", 1, 1);
+  const BoneModel model = load("s.seg.nrrd", layered({4, 1, 1}, {{1, 1, 1, 0}, {0, 0, 0, 1}}, keys));
+  EXPECT_EQ(name_at(model, {0, 0, 0}), "bone");
+  EXPECT_EQ(name_at(model, {3, 0, 0}), "facial nerve");
+  const std::string first_gone = segment(1, "Bone", 1, 0) + segment(2, "Facial_Nerve", 1, 1);
+  const BoneModel other = load("t.seg.nrrd", layered({2, 1, 1}, {{1, 0}, {0, 1}}, first_gone));
+  EXPECT_EQ(name_at(other, {0, 0, 0}), "bone");
+  EXPECT_EQ(name_at(other, {1, 0, 0}), "facial nerve");
+}
+
 TEST_F(SegmentsTest, ASegmentWithoutItsLayerIsRefused) {
   const std::string bytes = layered({2, 1, 1}, {{1, 0}, {0, 1}}, segment(0, "Bone", 1, 2));
   EXPECT_THAT(test::message_of([&] { load("s.seg.nrrd", bytes); }),
@@ -131,6 +146,31 @@ TEST_F(SegmentsTest, ASegmentationNamesAScanInItsPlaceHoweverBothAreTurned) {
     EXPECT_FLOAT_EQ(model.density[model.grid.index(0, 0, 0)], 0.0F);
     EXPECT_THAT(model.source, HasSubstr("segments of ear.seg.nrrd"));
   }
+}
+
+// Half of the nerve and all of the incus lie beyond the scan.
+TEST_F(SegmentsTest, WhatLiesBeyondTheScanIsSaid) {
+  PlainVolume segments({60, 30, 30});
+  segments.origin = {-3, 4, 5};
+  segments.more = segment(0, "Facial_Nerve", 3, 0) + segment(1, "Incus", 4, 0);
+  segments.fill([&](const Eigen::Vector3d& p) {
+    const bool row = p.y() == 18.0 && p.z() == 19.0;
+    return row && p.x() >= 17.0 && p.x() < 37.0 ? 3 : row && p.x() >= 40.0 ? 4 : 0;
+  });
+  test::write_bytes(folder_ / "ear.seg.nrrd", nrrd_of(segments));
+  LoadOptions options;
+  options.spacing = 1e-3;
+  options.segments = folder_ / "ear.seg.nrrd";
+  const std::string file = options.segments.string();
+  const BoneModel model = load("scan.nrrd", nrrd_of(scan(0.0)), options);
+  EXPECT_THAT(model.notes,
+              ElementsAre("facial nerve, a vital structure, is lost in part: 20.0 mm3 in " + file +
+                              ", 10.0 mm3 here",
+                          StartsWith("incus, a vital structure, is lost: 17.0 mm3 in " + file +
+                                     ", none here")));
+  options.crop = Eigen::AlignedBox3d(1e-3 * Eigen::Vector3d(-10, 0, 0),
+                                     1e-3 * Eigen::Vector3d(25, 50, 50));
+  EXPECT_THAT(load("scan.nrrd", nrrd_of(scan(0.0)), options).notes, IsEmpty());  // as asked
 }
 
 TEST_F(SegmentsTest, ASegmentOfBoneReplacesTheThreshold) {
@@ -202,8 +242,16 @@ TEST_F(SegmentsTest, AMeshBecomesAStructureOfItsVolumeInItsPlace) {
       EXPECT_NEAR(1e9 * found.volume, exact, 0.06 * exact) << file << degrees;
       EXPECT_LT((1e3 * found.box.center() - 0.5 * (low + high)).norm(), 0.3) << file << degrees;
       EXPECT_DOUBLE_EQ(found.mean_density, 1.0);
+      EXPECT_THAT(model.notes, IsEmpty());
     }
   }
+  test::write_bytes(folder_ / "far.stl", stl_box({21, 15, 16}, {31, 20, 21}, "scene"));
+  LoadOptions beyond;
+  beyond.spacing = 1e-3;
+  beyond.meshes = {{"cn vii", folder_ / "far.stl", {}}};
+  EXPECT_THAT(load("scan.nrrd", nrrd_of(scan(0.0)), beyond).notes,
+              ElementsAre(AllOf(HasSubstr("facial nerve, a vital structure, is lost in part: 250.0"),
+                                HasSubstr("far.stl, "))));
   LoadOptions wrong;
   wrong.meshes = {{"cn vii", folder_ / "lps.stl", true}};
   EXPECT_THAT(test::message_of([&] { load("scan.nrrd", nrrd_of(scan(0.0)), wrong); }),
