@@ -103,6 +103,7 @@ Experiment load_experiment(const std::filesystem::path& file, const std::string&
   }
   check_pictures(*experiment.definition, folder);
   experiment.study->protocol().load(*experiment.definition, folder);
+  experiment.study->check_loaded(*experiment.definition);
   return experiment;
 }
 

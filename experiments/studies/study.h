@@ -53,6 +53,10 @@ class Study {
     static_cast<void>(definition);
     static_cast<void>(fresh);
   }
+  /// Checks what only a definition with all that it loads can tell. @throws InputError
+  virtual void check_loaded(const protocols::Definition& definition) const {
+    static_cast<void>(definition);
+  }
   /// Sentences on what spoils the analysis without a word.
   virtual std::vector<std::string> analysis_warnings(
       const protocols::Definition& definition) const {

@@ -142,6 +142,10 @@ TEST_F(CurriculumSessionTest, MistakesGetASentence) {
   EXPECT_THAT(refused("validate bad.toml"), HasSubstr("did you mean removed?"));
   write("bad.toml", "score >= 3", "time <= 3600");
   EXPECT_THAT(refused("validate bad.toml"), HasSubstr("name its file in feedback.score"));
+  write("bad.toml", "bone_left_facial_nerv_mm >= 3", "time <= 3600");
+  EXPECT_THAT(refused("validate bad.toml"), HasSubstr("did you mean bone_left_facial_nerve_mm?"));
+  write("bad.toml", "bone_left_facial_nerve_mm >= 12", "time <= 3600");
+  EXPECT_THAT(refused("validate bad.toml"), HasSubstr("allowed: up to 10 mm"));
   EXPECT_THAT(refused("run study.toml --subject P01 --case plane --out people"),
               HasSubstr("has no case 'plane'"));
   EXPECT_THAT(refused("dry-run study.toml --parts parts"), HasSubstr("leave it out"));

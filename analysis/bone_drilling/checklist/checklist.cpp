@@ -75,7 +75,7 @@ void check_measures(const Checklist& checklist, const ProcedureSummary& summary,
 }
 
 std::optional<int> proposed_points(const ChecklistItem& item, const ProcedureSummary& summary) {
-  const auto value = item.measure.empty() ? std::nullopt : quantity(summary, item.measure);
+  const auto value = item.measure.empty() ? std::nullopt : judged_quantity(summary, item.measure);
   if (!value) {
     return std::nullopt;
   }
@@ -97,10 +97,13 @@ std::string checklist_section(const Checklist& checklist, const ProcedureSummary
   std::vector<std::vector<std::string>> rows;
   for (const ChecklistItem& item : checklist.items) {
     const auto points = proposed_points(item, summary);
-    const auto value = item.measure.empty() ? std::nullopt : quantity(summary, item.measure);
+    const double value =
+        item.measure.empty() ? NAN : judged_quantity(summary, item.measure).value_or(NAN);
     rows.push_back({item.text, points ? std::to_string(*points) : "a rater says",
                     std::to_string(item.points), item.measure,
-                    value ? fmt::format("{:.4g}", *value) : "-"});
+                    std::isnan(value)   ? "-"
+                    : std::isinf(value) ? "beyond what is measured"
+                                        : fmt::format("{:.4g}", value)});
   }
   return "<h2>" + escape_html("Checklist: " + checklist.name) + "</h2>\n" +
          html_table({"item", "points", "of", "by the measure", "its value"}, rows) +

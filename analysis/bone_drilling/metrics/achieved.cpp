@@ -12,7 +12,6 @@ namespace {
 
 using subject::PlanPart;
 
-constexpr double kLeftReach = 10e-3;  // thicker bone is not measured [m]
 constexpr double kStep = 0.01;        // of a path: noise of single ticks is no way [s]
 constexpr double kCubicMillimetres = 1e9;
 
@@ -61,6 +60,21 @@ std::string column_of(const std::string& structure) {
 
 }  // namespace
 
+std::vector<BoneLeft> untouched(const bone::BoneModel& bone) {
+  std::array<bool, 256> there{};
+  for (const std::uint8_t label : bone.labels) {
+    there[label] = true;
+  }
+  std::vector<BoneLeft> left;
+  for (std::size_t label = 1; label < bone.structures.size(); ++label) {
+    if (bone.structures[label].vital && there[label]) {
+      left.push_back(
+          {bone.structures[label].name, static_cast<std::uint8_t>(label), std::nullopt});
+    }
+  }
+  return left;
+}
+
 std::optional<double> PlanCount::share() const {
   return planned > 0 ? std::optional(static_cast<double>(removed) / static_cast<double>(planned))
                      : std::nullopt;
@@ -89,7 +103,7 @@ std::vector<AchievedFigure> figures_of(const Achieved& a) {
       a.fragment ? of_fragment(*a.fragment, a.path) : of_cavity(a);
   for (const BoneLeft& left : a.left) {
     figures.push_back({column_of(left.structure), "bone left over the " + left.structure, "mm",
-                       in_unit(left.thickness, 1e3)});
+                       in_unit(left.thickness, 1e3), true});
   }
   return figures;
 }
@@ -108,16 +122,10 @@ AchievedMeter::AchievedMeter(const ProcedurePlans& plans,
   if (plan_) {
     achieved_.plan.emplace().planned = plan_->planned;
   }
-  std::array<bool, 256> there{};
-  for (const std::uint8_t label : bone_->labels) {
-    there[label] = true;
-  }
-  for (std::size_t label = 1; label < bone_->structures.size(); ++label) {
-    if (bone_->structures[label].vital && there[label]) {
-      const auto own = static_cast<std::uint8_t>(label);
-      achieved_.left.push_back({bone_->structures[label].name, own, std::nullopt});
-      fields_.push_back(bones.field(bone_, own, std::min(kLeftReach, 250.0 * bone_->grid.spacing)));
-    }
+  achieved_.left = untouched(*bone_);
+  for (const BoneLeft& left : achieved_.left) {
+    fields_.push_back(
+        bones.field(bone_, left.label, std::min(kLeftReach, 250.0 * bone_->grid.spacing)));
   }
   nearest_.resize(fields_.size());
 }

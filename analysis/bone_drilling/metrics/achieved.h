@@ -15,11 +15,14 @@ namespace haptrial::analysis::drilling {
 
 class StudyBones;
 
+/// Thicker bone over a structure is not measured [m].
+inline constexpr double kLeftReach = 10e-3;
+
 /// Least thickness that a procedure left over a vital structure.
 struct BoneLeft {
   std::string structure;
   std::uint8_t label{0};
-  std::optional<double> thickness;  // from 0, opened or bare; nothing beyond a centimetre [m]
+  std::optional<double> thickness;  // from 0, opened or bare; nothing beyond kLeftReach [m]
 
   bool operator==(const BoneLeft&) const = default;
 };
@@ -36,6 +39,9 @@ struct PlanCount {
   void add(subject::PlanPart part);
   bool operator==(const PlanCount&) const = default;
 };
+
+/// The vital structures that a bone has, in the order of labels, with nothing measured.
+std::vector<BoneLeft> untouched(const bone::BoneModel& bone);
 
 /// Achievement of a procedure, and its cost. Source: Morris 2006, §3.5.
 struct Achieved {
@@ -58,6 +64,7 @@ struct AchievedFigure {
   std::string title;
   std::string unit;             // "%", "mm3", ...; what `value` is in
   std::optional<double> value;  // nothing: not defined
+  bool measured_to_reach{false};  // of bone left: without a value, more than kLeftReach is left
 };
 
 /// All of them, those of the plan first; those of a cavity only where no osteotomy is planned.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -320,6 +321,15 @@ std::optional<double> quantity(const ProcedureSummary& summary, std::string_view
     }
   }
   return std::nullopt;
+}
+
+std::optional<double> judged_quantity(const ProcedureSummary& summary, std::string_view name) {
+  for (const AchievedFigure& figure : figures_of(summary.achieved)) {
+    if (figure.column == name && figure.measured_to_reach && !figure.value) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  return quantity(summary, name);
 }
 
 std::vector<std::string> quantity_names(const ProcedureSummary& summary) {

@@ -84,6 +84,8 @@ struct ProcedureSummary {
 /// A metric by its name, or a figure of what was achieved by its column; nothing where it is not
 /// defined, or there is no such quantity.
 std::optional<double> quantity(const ProcedureSummary& summary, std::string_view name);
+/// quantity() for a judgement: infinity for bone left of which there is more than is measured.
+std::optional<double> judged_quantity(const ProcedureSummary& summary, std::string_view name);
 /// The names that quantity() knows of a procedure.
 std::vector<std::string> quantity_names(const ProcedureSummary& summary);
 

@@ -20,10 +20,22 @@ std::vector<std::string> quantity_names() {
   return names;
 }
 
+std::vector<std::string> quantity_names_on(const bone::BoneModel& bone, bool osteotomy) {
+  ProcedureSummary summary;
+  summary.achieved.left = untouched(bone);
+  if (osteotomy) {
+    summary.achieved.fragment.emplace();
+  }
+  return quantity_names(summary);
+}
+
+bool is_bone_left(std::string_view name) {
+  return name.starts_with("bone_left_") && name.ends_with("_mm");
+}
+
 bool is_quantity(std::string_view name) {
   const std::vector<std::string> names = quantity_names();
-  return (name.starts_with("bone_left_") && name.ends_with("_mm")) ||
-         std::ranges::find(names, name) != names.end();
+  return is_bone_left(name) || std::ranges::find(names, name) != names.end();
 }
 
 QuantityWords words_of_quantity(std::string_view name) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace haptrial::bone {
@@ -130,6 +131,9 @@ std::string words_of(const Criterion& c) {
 
 std::string words_of(const CheckedCriterion& checked) {
   const Criterion& c = checked.criterion;
+  if (checked.value && std::isinf(*checked.value)) {
+    return fmt::format("{} beyond what is measured ({})", title_of(c), wanted(c));
+  }
   return checked.value
              ? fmt::format("{} {:.4g}{} ({})", title_of(c), *checked.value, unit_of(c), wanted(c))
              : fmt::format("no {} ({})", title_of(c), wanted(c));

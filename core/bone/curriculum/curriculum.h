@@ -50,7 +50,8 @@ Curriculum read_curriculum(Table& table, const std::vector<std::string>& bones);
 struct CaseAttempt {
   std::string name;                        // of the case
   std::string date;                        // for people
-  std::map<std::string, double> values{};  // of the quantities that its case asks for and it has
+  /// Of the quantities that its case asks for and it has; infinity: more than is measured.
+  std::map<std::string, double> values{};
 };
 
 /// A criterion beside what a procedure reached.
@@ -85,7 +86,8 @@ CurriculumStanding standing(const Curriculum& curriculum, std::span<const CaseAt
 
 /// "planned cavity removed at least 80 %".
 std::string words_of(const Criterion& criterion);
-/// "planned cavity removed 72.1 % (at least 80)"; "no score (at least 3)".
+/// "planned cavity removed 72.1 % (at least 80)"; "no score (at least 3)"; "bone left over facial
+/// nerve beyond what is measured (at most 3)".
 std::string words_of(const CheckedCriterion& checked);
 /// Why a case comes: what was missed the last time, or how many passes are left; empty for a case
 /// that begins.

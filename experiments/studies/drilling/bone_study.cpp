@@ -101,6 +101,9 @@ class BoneStudy final : public Study {
     read_drilling_learning(root, d);
     check_curriculum(root, d);
   }
+  void check_loaded(const protocols::Definition& definition) const override {
+    check_criteria(dynamic_cast<const protocols::BoneDefinition&>(definition));
+  }
   std::optional<NextCase> next_case(const protocols::Definition& definition, const fs::path& folder,
                                     const std::vector<fs::path>& sessions) const override {
     const auto& d = dynamic_cast<const protocols::BoneDefinition&>(definition);

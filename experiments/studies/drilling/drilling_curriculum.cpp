@@ -72,7 +72,7 @@ class CaseSession {
   std::optional<double> value_of(const std::string& name, const drilling::ProcedureSummary& summary,
                                  const protocols::BoneDefinition& definition) const {
     if (name != bone::kScoreQuantity) {
-      return quantity(summary, name);
+      return judged_quantity(summary, name);
     }
     if (score_ == nullptr) {
       return std::nullopt;
@@ -85,6 +85,26 @@ class CaseSession {
   const drilling::ScoreModel* score_;
   std::map<int, std::string> conditions_;  // by trial
 };
+
+/// @param known  quantities of procedures of its case  @param of  file and case
+void check_criterion(const bone::Criterion& criterion, const std::vector<std::string>& known,
+                     const std::string& of) {
+  const std::string& name = criterion.quantity;
+  if (name == bone::kScoreQuantity) {
+    return;
+  }
+  if (std::ranges::find(known, name) == known.end()) {
+    const std::string hint = did_you_mean(name, known);
+    throw InputError(fmt::format("{} asks for '{}', which its bone does not have{} allowed: {}", of,
+                                 name, hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+  }
+  const double most = 1e3 * drilling::kLeftReach;  // [mm]
+  if (drilling::is_bone_left(name) && criterion.value > most) {
+    throw InputError(fmt::format("{} asks for '{}' of {:g} mm; allowed: up to {:g} mm, beyond "
+                                 "which bone left is not measured",
+                                 of, name, criterion.value, most));
+  }
+}
 
 }  // namespace
 
@@ -134,6 +154,21 @@ void check_curriculum(Table& root, const protocols::BoneDefinition* definition) 
     const std::string hint = did_you_mean(name, known);
     curriculum.reject("cases", fmt::format("asks for '{}'{} allowed: score, {}", name,
                                            hint.empty() ? ";" : hint, fmt::join(known, ", ")));
+  }
+}
+
+void check_criteria(const protocols::BoneDefinition& d) {
+  if (!d.curriculum) {
+    return;
+  }
+  for (const bone::CurriculumCase& each : d.curriculum->cases) {
+    const auto source = static_cast<std::size_t>(std::ranges::find(d.sources, each.bone) -
+                                                 d.sources.begin());
+    const std::vector<std::string> known =
+        drilling::quantity_names_on(*d.bones.at(source), d.osteotomy.has_value());
+    for (const bone::Criterion& criterion : each.pass) {
+      check_criterion(criterion, known, fmt::format("{}: case \"{}\"", d.file_name, each.name));
+    }
   }
 }
 

@@ -27,6 +27,11 @@ NextCase next_case_of(const protocols::BoneDefinition& definition,
 /// @param definition  read from the same tables; null if it cannot be read
 void check_curriculum(Table& root, const protocols::BoneDefinition* definition);
 
+/// Checks criteria by the bone of each case. @param definition  with its bones
+/// @throws InputError for a quantity that no procedure on that bone has, and for more bone left than
+/// is measured
+void check_criteria(const protocols::BoneDefinition& definition);
+
 /// The score that a definition names, if its criteria ask for one.
 std::optional<analysis::drilling::ScoreModel> score_for(const protocols::BoneDefinition& definition,
                                                         const std::filesystem::path& folder);

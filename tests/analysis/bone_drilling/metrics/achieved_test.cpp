@@ -2,11 +2,14 @@
 
 #include "analysis/bone_drilling/metrics/achieved.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <set>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "analysis/bone_drilling/metrics/quantities.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
 namespace haptrial::analysis::drilling::achieved_test {
@@ -135,6 +138,22 @@ TEST(AchievedTest, ThePathIsThatOfTheTip) {
   const Achieved a = summarize(p, {}, bones).achieved;
   EXPECT_NEAR(a.path, 0.077, 1e-9);
   EXPECT_NEAR(*a.economy(), 1e-9 / 0.077, 1e-15);
+}
+
+// Whoever stays out of reach of a structure left more bone over it than any criterion asks for.
+TEST(AchievedTest, BoneLeftBeyondTheReachIsJudgedAsMoreThanAnything) {
+  Procedure far = test::procedure_on(block_with_nerve()), near = far;
+  test::remove_in_turn(near, {{7, 10, 9}});
+  StudyBones bones;
+  const char* const left = "bone_left_facial_nerve_mm";
+  const ProcedureSummary summary = summarize(far, {}, bones);
+  EXPECT_EQ(quantity(summary, left), std::nullopt);
+  EXPECT_EQ(judged_quantity(summary, left), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(judged_quantity(summary, "bone_left_sigmoid_sinus_mm"), std::nullopt);
+  EXPECT_EQ(judged_quantity(summarize(near, {}, bones), left), 5.0);
+  EXPECT_THAT(quantity_names_on(*far.bone, false), testing::Contains(left));
+  EXPECT_THAT(quantity_names_on(*far.bone, false),
+              testing::Not(testing::Contains("bone_left_sigmoid_sinus_mm")));
 }
 
 TEST(AchievedTest, TheTableHasAColumnForEachFigure) {

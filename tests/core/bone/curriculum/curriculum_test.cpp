@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "core/base/definition/table.h"
 #include "tests/support/message_of.h"
 
@@ -88,6 +90,16 @@ TEST(CurriculumTest, ACaseIsDoneAfterSoManyPassesInARow) {
 
 TEST(CurriculumTest, AQuantityThatAProcedureLacksIsMissed) {
   EXPECT_EQ(next_after({{"plain", "", {{"removed", 90.0}}}, plain(90.0, 0.0)}), "plain");
+}
+
+// More than is measured is at least whatever was asked for, and never at most so much.
+TEST(CurriculumTest, WhatLiesBeyondTheMeasureIsAtLeastAnything) {
+  const CaseAttempt far = plain(std::numeric_limits<double>::infinity(), 0.0);
+  EXPECT_EQ(next_after({far, far}), "hard");
+  const Curriculum curriculum = read(kCases);
+  const CaseAttempt other = plain(90.0, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(why_next(curriculum, standing(curriculum, std::vector{other})),
+            "missed last: injured beyond what is measured (at most 0)");
 }
 
 TEST(CurriculumTest, AnEarlierCaseComesAgainAfterTooManyFailures) {
