@@ -125,6 +125,15 @@ std::shared_ptr<const bone::RegionMap> region_map(const BoneDefinition& d,
   }
 }
 
+std::shared_ptr<const hint::HintMap> hint_map(const BoneDefinition& d,
+                                              const bone::BoneModel& model) {
+  try {
+    return std::make_shared<const hint::HintMap>(*d.hints, model);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", d.file_name, error.what()));
+  }
+}
+
 /// Start of a hand that only sees: in the middle of the first picture, in front of all bone.
 Eigen::Vector3d before_bones(const BoneDefinition& d) {
   constexpr double kBefore = 0.010;  // of the nearest bone; beyond the largest burr's radius [m]
@@ -181,7 +190,7 @@ void load_bones(BoneDefinition& d, const fs::path& folder) {
       d.region_maps.push_back(region_map(d, *d.bones.back()));
     }
     if (d.hints) {
-      d.hint_maps.push_back(std::make_shared<const hint::HintMap>(*d.hints, *d.bones.back()));
+      d.hint_maps.push_back(hint_map(d, *d.bones.back()));
     }
   }
   d.mouse.in_space = true;

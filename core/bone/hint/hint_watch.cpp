@@ -1,8 +1,14 @@
 #include "core/bone/hint/hint_watch.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <utility>
+
+#include "core/base/error.h"
 
 namespace haptrial::hint {
 namespace {
@@ -24,6 +30,27 @@ HintMap::HintMap(const HintSetup& setup, const bone::BoneModel& bone) {
     fields_.push_back(
         std::make_shared<const bone::DistanceField>(bone, bone::labels_named(bone, name), reach));
   }
+  if (setup.needs_limits() && judged().empty()) {
+    std::vector<std::string_view> known;
+    for (const SafeStructure& each : setup.limits.structures) {
+      known.push_back(each.name);
+    }
+    throw InputError(fmt::format(
+        "hints.file {} has safe values near {}, of which bone {} has none; allowed: values near one "
+        "of its structures: {}",
+        setup.file, fmt::join(known, ", "), bone.name,
+        fmt::join(bone::vital_structures(bone), ", ")));
+  }
+}
+
+std::vector<std::string> HintMap::judged() const {
+  std::vector<std::string> names;
+  for (const SafeStructure& each : structures_) {
+    if (!each.intervals.empty()) {
+      names.push_back(each.name);
+    }
+  }
+  return names;
 }
 
 HintMap::Place HintMap::at(const bone::Voxel& voxel) const noexcept {

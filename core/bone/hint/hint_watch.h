@@ -35,7 +35,8 @@ struct HintVoxel {
 /// Limits and distances for the hints on one bone, as it was made. Immutable: any thread.
 class HintMap {
  public:
-  /// @throws std::invalid_argument for a reach beyond what distance fields have
+  /// @throws InputError where force or speed is judged and the limits know no structure of the bone:
+  /// hints would be silently off; std::invalid_argument for a reach beyond what distance fields have
   HintMap(const HintSetup& setup, const bone::BoneModel& bone);
 
   /// A place by what is near and what is safe there.
@@ -45,6 +46,8 @@ class HintMap {
     const SafeInterval* safe{nullptr};  // null: nothing is known
   };
   Place at(const bone::Voxel& voxel) const noexcept;
+  /// Names of the structures near which forces and speeds are judged.
+  std::vector<std::string> judged() const;
   /// Empty for -1.
   std::string name(std::int32_t structure) const;
 

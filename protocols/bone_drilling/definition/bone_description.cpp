@@ -77,7 +77,8 @@ std::string describe_nerves(const BoneDefinition& d) {
                      d.nerves->monitor.rate, heard);
 }
 
-std::string describe_hints(const hint::HintSetup& setup) {
+std::string describe_hints(const BoneDefinition& d) {
+  const hint::HintSetup& setup = *d.hints;
   std::vector<std::string_view> kinds;
   for (const auto kind : hint::kAllHintKinds) {
     if (setup.gives(kind)) {
@@ -90,7 +91,12 @@ std::string describe_hints(const hint::HintSetup& setup) {
                          : fmt::format("; safe values of {} ({} of {})",
                                        counted(setup.limits.participants, "expert", "experts"),
                                        setup.file, setup.limits.study);
-  return fmt::format("hints: {}, {}{}", fmt::join(kinds, ", "), shown, from);
+  std::string judged;
+  for (std::size_t n = 0; n < d.hint_maps.size() && setup.needs_limits(); ++n) {
+    judged += fmt::format("; in {} near {}", d.bones[n]->name,
+                          fmt::join(d.hint_maps[n]->judged(), ", "));
+  }
+  return fmt::format("hints: {}, {}{}{}", fmt::join(kinds, ", "), shown, from, judged);
 }
 
 std::string describe_regions(const bone::RegionSetup& setup) {
@@ -193,7 +199,7 @@ std::vector<std::string> BoneDefinition::description() const {
     lines.push_back(describe_nerves(*this));
   }
   if (hints) {
-    lines.push_back(describe_hints(*hints));
+    lines.push_back(describe_hints(*this));
   }
   if (forbidden) {
     lines.push_back(describe_regions(*forbidden));

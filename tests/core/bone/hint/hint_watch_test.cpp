@@ -9,6 +9,7 @@
 
 #include "core/bone/hint/hints_beside.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::hint {
 namespace {
@@ -41,6 +42,20 @@ HintSetup setup() {
   s.holds = 0.5;
   s.limits.structures = {{"nerve", {{0.0, 2.5e-3, 1.0, 0.01}, {2.5e-3, 4.5e-3, 2.0, 0.02}}}};
   return s;
+}
+
+// Limits of another body would give no hint at all, without a word.
+TEST(HintMapTest, LimitsWithoutAStructureOfTheBoneAreRefused) {
+  EXPECT_THAT(HintMap(setup(), *block()).judged(), testing::ElementsAre("nerve"));
+  HintSetup heart = setup();
+  heart.file = "heart.toml";
+  heart.limits.structures.front().name = "left ventricle";
+  EXPECT_THAT(test::message_of([&] { HintMap(heart, *block()); }),
+              testing::AllOf(testing::HasSubstr("heart.toml has safe values near left ventricle"),
+                             testing::HasSubstr("structures: nerve, sinus")));
+  heart.kinds = {};
+  heart.kinds[static_cast<std::size_t>(HintKind::kHidden)] = true;
+  EXPECT_NO_THROW(HintMap(heart, *block())) << "hidden bone needs no limits";
 }
 
 class HintWatchTest : public testing::Test {
