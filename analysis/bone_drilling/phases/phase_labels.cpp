@@ -1,10 +1,13 @@
 #include "analysis/bone_drilling/phases/phase_labels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/files/csv.h"
 #include "analysis/files/delimited.h"
+#include "core/base/error.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -77,6 +80,25 @@ PhaseLabels read_phase_labels(const std::filesystem::path& file) {
     labels[key] = sorted(std::move(own), table, start);
   }
   return labels;
+}
+
+void check_phase_labels(const PhaseLabels& labels, const ProcedureLengths& lengths,
+                        const std::string& file, const std::string& study) {
+  constexpr double kRounding = 1.0;  // of ends that people write down [s]
+  for (const auto& [key, spans] : labels) {
+    const auto length = lengths.find(key);
+    if (length == lengths.end()) {
+      throw InputError(fmt::format("{}: labels procedure {} of {}, which {} does not have", file,
+                                   key.second, key.first, study));
+    }
+    if (spans.back().end > length->second + kRounding) {
+      throw InputError(
+          fmt::format("{}: phase \"{}\" of procedure {} of {} ends at {:g} s, but the procedure "
+                      "lasts {:.1f} s; write times of the procedure in seconds",
+                      file, spans.back().phase, key.second, key.first, spans.back().end,
+                      length->second));
+    }
+  }
 }
 
 std::vector<std::string> names_in(const PhaseLabels& labels) {

@@ -56,6 +56,8 @@ int bone_phases(const BonePhasesOptions& options) {
              model.simulated ? "; participants were programs" : "");
   fmt::print("phases      {}\n", fmt::join(model.phases, ", "));
   if (model.labelled) {
+    fmt::print("labelled    {:.0f} % of the actions of labelled procedures\n",
+               100.0 * learned.labelled);
     print_accuracy(learned.accuracy);
   }
   fmt::print("wrote       {}\n", out.string());

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -29,6 +30,7 @@ struct Observed {
   std::string session;
   int number;
   double rate;
+  double seconds;
   bool simulated;
   drilling::PhaseCase actions;
   std::vector<drilling::PhaseSpan> work;  // of a virtual surgeon
@@ -60,6 +62,7 @@ std::vector<Observed> observe(const fs::path& file, drilling::StudyBones& bones)
       observed.push_back({p.session,
                           p.number,
                           p.rate,
+                          static_cast<double>(p.ticks.size()) / p.rate,
                           p.simulated,
                           {p.participant, drilling::actions_of(p, bones), {}},
                           spans_of(p)});
@@ -89,9 +92,9 @@ std::vector<Observed> observe_study(const PhasesRequest& request,
 drilling::PhaseLabels labels_for(const PhasesRequest& request,
                                  const std::vector<Observed>& observed) {
   drilling::PhaseLabels labels;
-  std::set<std::pair<std::string, int>> known;
+  drilling::ProcedureLengths lengths;
   for (const Observed& each : observed) {
-    known.emplace(each.session, each.number);
+    lengths[{each.session, each.number}] = each.seconds;
     if (!each.work.empty()) {
       labels[{each.session, each.number}] = each.work;
     }
@@ -106,13 +109,7 @@ drilling::PhaseLabels labels_for(const PhasesRequest& request,
     return labels;
   }
   labels = drilling::read_phase_labels(request.labels);
-  for (const auto& [key, spans] : labels) {
-    if (!known.contains(key)) {
-      throw InputError(fmt::format("{}: labels procedure {} of {}, which {} does not have",
-                                   request.labels.string(), key.second, key.first,
-                                   request.study.string()));
-    }
-  }
+  drilling::check_phase_labels(labels, lengths, request.labels.string(), request.study.string());
   return labels;
 }
 
@@ -140,13 +137,20 @@ LearnedPhases learn_study_phases(const PhasesRequest& request) {
   } else {
     const drilling::PhaseLabels labels = labels_for(request, observed);
     const std::vector<std::string> names = drilling::names_in(labels);
+    double actions = 0.0, unlabelled = 0.0;  // of labelled procedures
     for (const Observed& each : observed) {
       if (const auto own = labels.find({each.session, each.number}); own != labels.end()) {
-        cases.push_back(each.actions);
-        cases.back().phase =
-            drilling::phases_at(cases.back().actions, own->second, names, each.rate);
+        drilling::PhaseCase labelled = each.actions;
+        labelled.phase = drilling::phases_at(labelled.actions, own->second, names, each.rate);
+        const auto without = std::ranges::count(labelled.phase, -1);
+        actions += static_cast<double>(labelled.phase.size());
+        unlabelled += static_cast<double>(without);
+        if (without < std::ssize(labelled.phase)) {
+          cases.push_back(std::move(labelled));
+        }
       }
     }
+    learned.labelled = actions > 0.0 ? 1.0 - unlabelled / actions : 0.0;
     learned.model = value_or_refuse(request, drilling::learn_phases(cases, names));
     learned.accuracy = drilling::left_out_accuracy(cases, names);
   }

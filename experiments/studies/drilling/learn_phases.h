@@ -19,7 +19,8 @@ struct PhasesRequest {
 };
 
 struct LearnedPhases {
-  analysis::drilling::PhaseModel model;
+  analysis::drilling::PhaseModel model;  // procedures without a labelled action do not count
+  double labelled{0.0};                  // share of actions that a label holds, with labels
   /// By models of other participants; undefined without labels.
   analysis::Defined<analysis::drilling::PhaseAccuracy> accuracy{analysis::Undefined{""}};
 };

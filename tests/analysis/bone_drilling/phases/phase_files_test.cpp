@@ -47,6 +47,22 @@ TEST(PhaseLabelsTest, MistakesAreSaid) {
               HasSubstr(":2: start_s is '1.9'; allowed: a time at or after the end"));
 }
 
+TEST(PhaseLabelsTest, LabelsBeyondTheirProcedureAreRefused) {
+  const ProcedureLengths lengths{{{"S01.h5", 1}, 30.25}};
+  const auto refusal = [&](const char* session, double end) {
+    return test::message_of([&] {
+      check_phase_labels({{{session, 1}, {{"open", 0.0, 10.0}, {"deepen", 10.0, end}}}}, lengths,
+                         "labels.csv", "out/study");
+    });
+  };
+  EXPECT_THAT(refusal("S01.h5", 9000.0),
+              HasSubstr("phase \"deepen\" of procedure 1 of S01.h5 ends at 9000 s, but the "
+                        "procedure lasts 30.2 s"));
+  EXPECT_THAT(refusal("S02.h5", 20.0), HasSubstr("which out/study does not have"));
+  EXPECT_NO_THROW(check_phase_labels({{{"S01.h5", 1}, {{"open", 0.0, 31.0}}}}, lengths, "", ""))
+      << "rounded to a whole second";
+}
+
 TEST(PhaseLabelsTest, ActionsHaveThePhaseOfTheirMiddle) {
   std::vector<Action> actions(3);
   for (std::size_t n = 0; n < 3; ++n) {
