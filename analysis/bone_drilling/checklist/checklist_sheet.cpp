@@ -110,6 +110,17 @@ int points_at(const CsvTable& table, std::size_t row, std::size_t column, double
   return static_cast<int>(value);
 }
 
+/// @throws InputError unless a table has what the checklist says now.
+void require_as_rated(const CsvTable& table, std::size_t row, std::size_t column, double rated,
+                      double now, const Checklist& checklist) {
+  if (rated != now) {
+    table.refuse(row, column,
+                 fmt::format("{:g}, as checklist \"{}\" has it; it was changed after the rating, so "
+                             "restore it or rate anew",
+                             now, checklist.name));
+  }
+}
+
 CheckedRow& row_for(std::vector<CheckedRow>& rows, const CheckedRow& key, std::size_t items) {
   const auto at = std::find_if(rows.begin(), rows.end(), [&](const CheckedRow& each) {
     return each.session == key.session && each.procedure == key.procedure &&
@@ -213,6 +224,8 @@ std::vector<CheckedRow> load_checked(const std::filesystem::path& file,
   const std::size_t points = table.column("points"), proposed = table.column("proposed");
   const std::vector<double> numbers = table.numbers(procedure), values = table.numbers(points);
   const std::vector<double> measured = table.numbers(proposed);
+  const std::size_t full = table.column("most"), weight = table.column("weight");
+  const std::vector<double> mosts = table.numbers(full), weights = table.numbers(weight);
   std::vector<CheckedRow> rows;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const std::size_t n = item_at(table, row, item, checklist);
@@ -225,6 +238,8 @@ std::vector<CheckedRow> load_checked(const std::filesystem::path& file,
                                {}},
                               checklist.items.size());
     const int most = checklist.items[n].points;
+    require_as_rated(table, row, full, mosts[row], most, checklist);
+    require_as_rated(table, row, weight, weights[row], checklist.items[n].weight, checklist);
     own.points[n] = points_at(table, row, points, values[row], 0, most);
     own.proposed[n] = points_at(table, row, proposed, measured[row], -1, most);
   }

@@ -43,7 +43,8 @@ std::vector<CheckedRow> read_checklist_sheet(const std::filesystem::path& file,
 
 /// A table: session, procedure, rater, item, points, most, weight, proposed.
 std::string checked_csv(const Checklist& checklist, const std::vector<CheckedRow>& rows);
-/// @throws InputError for what checked_csv() does not write for this checklist
+/// @throws InputError for what checked_csv() does not write for this checklist, among it points or
+/// weights of another version of it
 std::vector<CheckedRow> load_checked(const std::filesystem::path& file, const Checklist& checklist);
 
 }  // namespace haptrial::analysis::drilling

@@ -122,6 +122,19 @@ TEST(ChecklistSheetTest, TheTableIsReadAsItWasWritten) {
   EXPECT_EQ(load_checked(folder / "checklist.csv", read(kText)), rows);
 }
 
+TEST(ChecklistSheetTest, AChecklistChangedAfterRatingIsRefused) {
+  const test::TemporaryFolder folder;
+  write(folder / "checklist.csv", checked_csv(read(kText), {{"S01.h5", 1, "Li", {3, 1}, {4, -1}}}));
+  Checklist points = read(kText), weight = points;
+  points.items[0].points = 9;
+  weight.items[1].weight = 0.5;
+  const auto refusal = [&](const Checklist& list) {
+    return test::message_of([&] { load_checked(folder / "checklist.csv", list); });
+  };
+  EXPECT_THAT(refusal(points), HasSubstr(":2: most is '4'; allowed: 9, as checklist"));
+  EXPECT_THAT(refusal(weight), HasSubstr("weight is '1'; allowed: 0.5"));
+}
+
 TEST(ChecklistSectionTest, AgreementIsThatOfTheTotals) {
   CheckedStudy study{read(kText), {}};
   const int points[][4] = {{4, 1, 4, 1}, {2, 1, 2, 0}, {0, 0, 1, 0}, {3, 1, 3, 1}};
