@@ -62,12 +62,12 @@ TEST_F(SpectrumCommandTest, MakesATableLevelByLevel) {
 }
 
 /// Two sines of a sensor, as a table.
-std::string sensed(const std::string& quantity, double amplitude) {
+std::string sensed(const std::string& quantity, double amplitude, double unit_of_time = 1.0) {
   std::string text = "time," + quantity + "\n";
   for (int i = 0; i < 8192; ++i) {
     const double time = i / 4000.0;
     const double turn = 2.0 * std::numbers::pi * 300.0 * time;
-    text += std::to_string(time) + "," +
+    text += std::to_string(time / unit_of_time) + "," +
             std::to_string(amplitude * (std::sin(turn) + 0.5 * std::sin(2.0 * turn + 1.0))) + "\n";
   }
   return text;
@@ -101,6 +101,9 @@ TEST_F(SpectrumCommandTest, UnitsAreNotMixed) {
   record("air.wav", 1140.0);
   test::write_text(folder_ / "force.csv", sensed("force", 0.4));
   test::write_text(folder_ / "acceleration.csv", sensed("acceleration", 8.0));
+  test::write_text(folder_ / "milliseconds.csv", sensed("force", 0.4, 1e-3));
+  test::write_text(folder_ / "millinewtons.csv", sensed("force", 400.0));
+  test::write_text(folder_ / "none.csv", sensed("force", 0.0));
   test::write_text(folder_ / "neither.csv", "time,volts\n0,1\n");
   test::write_text(folder_ / "uneven.csv", "time,force\n0,1\n0.001,1\n0.002,1\n0.004,1\n");
   ASSERT_EQ(run("haptrial spectrum force.csv t.toml --level free").status, 0);
@@ -112,6 +115,9 @@ TEST_F(SpectrumCommandTest, UnitsAreNotMixed) {
         {"air.wav --unit g --full-scale 2", "--unit is 'g'; allowed: N, m/s2"},
         {"force.csv --unit N --full-scale 2", "is a table, whose columns say the unit"},
         {"force.csv --wav out.wav", "--wav makes a sound, and force.csv is in N"},
+        {"milliseconds.csv", "has 4 rows a second by its column time; allowed: 200 to 1e+06"},
+        {"millinewtons.csv", "allowed: at most 100 [N]"},
+        {"none.csv none.toml", "has no line above its noise"},
         {"neither.csv", "has the columns time, volts; allowed: time [s] and either force [N]"},
         {"uneven.csv", "uneven.csv:5: time is '0.004'; allowed: about 0.001 s after"}}) {
     const auto result = run(std::string("haptrial spectrum ") + line);

@@ -216,9 +216,18 @@ std::vector<FeelSample> read_feel_samples(const CsvTable& table) {
   const std::vector<double> tilt = table.has("tilt") ? table.numbers(table.column("tilt"))
                                                      : std::vector<double>(table.rows(), 0.0);
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    constexpr double kDeepest = 0.03;  // [m]
+    // Other units give numbers far outside: mm, mN, mm/s.
+    constexpr double kDeepest = 0.03;     // [m]
+    constexpr double kStrongest = 100.0;  // [N]
+    constexpr double kFastest = 0.1;      // [m/s]
     if (std::abs(depth[row]) > kDeepest) {
       table.refuse(row, table.column("depth"), "a depth of at most 0.03 [m]");
+    }
+    if (std::abs(force[row]) > kStrongest) {
+      table.refuse(row, table.column("force"), "a force of at most 100 [N]");
+    }
+    if (std::abs(samples[row].feed.value_or(0.0)) > kFastest) {
+      table.refuse(row, table.column("feed"), "a speed of at most 0.1 [m/s]");
     }
     if (!(tilt[row] >= 0.0 && tilt[row] <= 0.5 * std::numbers::pi)) {
       table.refuse(row, table.column("tilt"), "an angle from 0 to 1.5708 [rad]");

@@ -56,7 +56,8 @@ double mean_latitude(double radius, double depth, double tilt) noexcept;
 FeelFit fit_feel(double radius, std::span<const FeelSample> samples);
 
 /// Reads the columns depth [m], force [N], and optionally feed [m/s] (an empty field: the burr is
-/// off) and tilt [rad]. @throws InputError for other tables, naming line and column
+/// off) and tilt [rad]. @throws InputError for other tables, naming line and column, and
+/// for numbers that can only be in other units
 std::vector<FeelSample> read_feel_samples(const CsvTable& table);
 
 }  // namespace haptrial::analysis::drilling

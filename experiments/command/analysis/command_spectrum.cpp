@@ -82,9 +82,23 @@ void check(const SpectrumOptions& options) {
   check_new_figure(options.picture, options.overwrite);
 }
 
+/// Refuses numbers that can only be in other units, such as mN.
+void check_amplitudes(const analysis::CsvTable& table, bool acceleration,
+                      const std::vector<double>& values) {
+  const double most = acceleration ? 1e5 : 100.0;  // [m/s2] or [N]
+  for (std::size_t row = 0; row < values.size(); ++row) {
+    if (std::abs(values[row]) > most) {
+      table.refuse(row, table.column(acceleration ? "acceleration" : "force"),
+                   fmt::format("at most {:g} [{}]", most,
+                               acceleration ? kAcceleration : sound::kNewton));
+    }
+  }
+}
+
 /// The table of a sensor: evenly in time, one of two quantities.
 Measured read_table(const std::string& file) {
-  constexpr double kUneven = 0.1;  // of a step
+  constexpr double kUneven = 0.1;                     // of a step
+  constexpr double kSlowest = 200.0, kFastest = 1e6;  // that can tell of a drill [Hz]
   const auto table = analysis::CsvTable::load(file);
   const bool acceleration = table.has("acceleration");
   if (acceleration == table.has("force")) {
@@ -98,6 +112,7 @@ Measured read_table(const std::string& file) {
       table.numbers(table.column(acceleration ? "acceleration" : "force"));
   Measured measured;
   measured.unit = acceleration ? kAcceleration : sound::kNewton;
+  check_amplitudes(table, acceleration, values);
   measured.recording.samples.assign(values.begin(), values.end());
   std::vector<double> steps{0.0};
   for (std::size_t i = 1; i < times.size(); ++i) {
@@ -114,6 +129,12 @@ Measured read_table(const std::string& file) {
     }
   }
   measured.recording.rate = static_cast<double>(times.size() - 1) / (times.back() - times.front());
+  if (!(measured.recording.rate >= kSlowest && measured.recording.rate <= kFastest)) {
+    throw InputError(
+        fmt::format("{}: has {:.4g} rows a second by its column time; allowed: {:g} to {:g}, with "
+                    "times in seconds",
+                    file, measured.recording.rate, kSlowest, kFastest));
+  }
   return measured;
 }
 
@@ -296,6 +317,12 @@ int spectrum(const SpectrumOptions& options) {
   const sound::PowerSpectrum power = spectrum_of(recording, options.segment, options.file);
   const sound::Spectrum found = sound::find_peaks(power, {.most = options.peaks});
   print_spectrum(measured, power, found);
+  if (!options.out.empty() && found.count == 0) {
+    throw InputError(
+        fmt::format("{}: has no line above its noise, so no table is written; record the drill "
+                    "while it turns",
+                    options.file));
+  }
   if (!options.out.empty()) {
     const sound::SpectrumTable table = table_with(options, measured.unit, found);
     WholeFile out(options.out, options.overwrite || options.add);

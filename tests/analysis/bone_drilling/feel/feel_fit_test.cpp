@@ -187,6 +187,8 @@ TEST(FeelFitTest, ATableIsReadAndRefusedByItsLine) {
     return "";
   };
   EXPECT_THAT(refusal("depth,force\n0.4,1\n1e-4,1\n"), HasSubstr("press.csv:2: depth is '0.4'"));
+  EXPECT_THAT(refusal("depth,force\n1e-4,500\n"), HasSubstr("allowed: a force of at most 100 [N]"));
+  EXPECT_THAT(refusal("depth,force,feed\n1e-4,1,2\n"), HasSubstr("at most 0.1 [m/s]"));
   EXPECT_THAT(refusal("depth,force,tilt\n1e-4,1,90\n"), HasSubstr("allowed: an angle from 0"));
   EXPECT_THAT(refusal("depth\n1\n"), HasSubstr("force"));
 }
