@@ -114,10 +114,11 @@ int points_at(const CsvTable& table, std::size_t row, std::size_t column, double
 void require_as_rated(const CsvTable& table, std::size_t row, std::size_t column, double rated,
                       double now, const Checklist& checklist) {
   if (rated != now) {
-    table.refuse(row, column,
-                 fmt::format("{:g}, as checklist \"{}\" has it; it was changed after the rating, so "
-                             "restore it or rate anew",
-                             now, checklist.name));
+    table.refuse(
+        row, column,
+        fmt::format("{:g}, as checklist \"{}\" has it; it was changed after the rating, so "
+                    "restore it or rate anew",
+                    now, checklist.name));
   }
 }
 

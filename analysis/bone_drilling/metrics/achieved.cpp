@@ -12,7 +12,7 @@ namespace {
 
 using subject::PlanPart;
 
-constexpr double kStep = 0.01;        // of a path: noise of single ticks is no way [s]
+constexpr double kStep = 0.01;  // of a path: noise of single ticks is no way [s]
 constexpr double kCubicMillimetres = 1e9;
 
 std::optional<double> in_unit(const std::optional<double>& value, double factor) {
@@ -68,8 +68,7 @@ std::vector<BoneLeft> untouched(const bone::BoneModel& bone) {
   std::vector<BoneLeft> left;
   for (std::size_t label = 1; label < bone.structures.size(); ++label) {
     if (bone.structures[label].vital && there[label]) {
-      left.push_back(
-          {bone.structures[label].name, static_cast<std::uint8_t>(label), std::nullopt});
+      left.push_back({bone.structures[label].name, static_cast<std::uint8_t>(label), std::nullopt});
     }
   }
   return left;

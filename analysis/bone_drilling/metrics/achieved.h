@@ -62,8 +62,8 @@ struct Achieved {
 struct AchievedFigure {
   std::string column;  // of metrics.csv
   std::string title;
-  std::string unit;             // "%", "mm3", ...; what `value` is in
-  std::optional<double> value;  // nothing: not defined
+  std::string unit;               // "%", "mm3", ...; what `value` is in
+  std::optional<double> value;    // nothing: not defined
   bool measured_to_reach{false};  // of bone left: without a value, more than kLeftReach is left
 };
 

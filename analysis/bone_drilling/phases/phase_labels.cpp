@@ -92,11 +92,10 @@ void check_phase_labels(const PhaseLabels& labels, const ProcedureLengths& lengt
                                    key.second, key.first, study));
     }
     if (spans.back().end > length->second + kRounding) {
-      throw InputError(
-          fmt::format("{}: phase \"{}\" of procedure {} of {} ends at {:g} s, but the procedure "
-                      "lasts {:.1f} s; write times of the procedure in seconds",
-                      file, spans.back().phase, key.second, key.first, spans.back().end,
-                      length->second));
+      throw InputError(fmt::format(
+          "{}: phase \"{}\" of procedure {} of {} ends at {:g} s, but the procedure "
+          "lasts {:.1f} s; write times of the procedure in seconds",
+          file, spans.back().phase, key.second, key.first, spans.back().end, length->second));
     }
   }
 }

@@ -25,8 +25,8 @@ PhaseLabels read_phase_labels(const std::filesystem::path& file);
 /// Length of each procedure that may be labelled, by session and number [s].
 using ProcedureLengths = std::map<std::pair<std::string, int>, double>;
 /// @param file   of the labels, for sentences  @param study  of the procedures, likewise
-/// @throws InputError for a procedure that is not there, and for a phase that ends more than a second
-/// after its procedure, as in milliseconds or of another recording
+/// @throws InputError for a procedure that is not there, and for a phase that ends more than a
+/// second after its procedure, as in milliseconds or of another recording
 void check_phase_labels(const PhaseLabels& labels, const ProcedureLengths& lengths,
                         const std::string& file, const std::string& study);
 

@@ -55,9 +55,9 @@ struct RatingKey {
   bool operator==(const RatingKey&) const = default;
 };
 
-/// Codes of four letters and digits, none of which looks like another. Their stream follows from the
-/// seed and all fingerprints: a sheet of another study, or of the study before a procedure was added
-/// to it, has codes that are unknown here.
+/// Codes of four letters and digits, none of which looks like another. Their stream follows from
+/// the seed and all fingerprints: a sheet of another study, or of the study before a procedure was
+/// added to it, has codes that are unknown here.
 /// @throws InputError for two items of one session and number.
 RatingKey blinded(std::vector<RatedItem> items, std::uint64_t seed, bool halves);
 

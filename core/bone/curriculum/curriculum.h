@@ -48,8 +48,8 @@ Curriculum read_curriculum(Table& table, const std::vector<std::string>& bones);
 
 /// A procedure that a trainee did, from its start to its end.
 struct CaseAttempt {
-  std::string name;                        // of the case
-  std::string date;                        // for people
+  std::string name;  // of the case
+  std::string date;  // for people
   /// Of the quantities that its case asks for and it has; infinity: more than is measured.
   std::map<std::string, double> values{};
 };

@@ -133,9 +133,9 @@ SourceVolume with_missing_noted(const std::string& name, SourceVolume volume) {
   const auto missing =
       std::ranges::count_if(volume.values, [](float value) { return !std::isfinite(value); });
   if (missing > 0) {
-    volume.head.notes.push_back(
-        fmt::format("{} of the {} values of {} are not finite numbers; they are taken as the lowest",
-                    missing, volume.values.size(), name));
+    volume.head.notes.push_back(fmt::format(
+        "{} of the {} values of {} are not finite numbers; they are taken as the lowest", missing,
+        volume.values.size(), name));
   }
   return volume;
 }

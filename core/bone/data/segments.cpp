@@ -62,8 +62,8 @@ std::vector<Segment> segments_in(const std::string& name, const VolumeHead& head
     const int label = number_in(value(number, "LabelValue"));
     const std::string words = value(number, "Layer");
     const int layer = words.empty() ? 0 : number_in(words);
-    if (label < 1 || label > static_cast<int>(kMostSegments) || layer < 0 || layer >= head.components ||
-        segments.size() >= kMostSegments) {
+    if (label < 1 || label > static_cast<int>(kMostSegments) || layer < 0 ||
+        layer >= head.components || segments.size() >= kMostSegments) {
       throw InputError(fmt::format(
           "{}: segment {} has value '{}' in layer '{}'; allowed: values 1 to 255 in "
           "layers 0 to {}, {} segments at most",

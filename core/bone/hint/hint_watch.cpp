@@ -35,11 +35,12 @@ HintMap::HintMap(const HintSetup& setup, const bone::BoneModel& bone) {
     for (const SafeStructure& each : setup.limits.structures) {
       known.push_back(each.name);
     }
-    throw InputError(fmt::format(
-        "hints.file {} has safe values near {}, of which bone {} has none; allowed: values near one "
-        "of its structures: {}",
-        setup.file, fmt::join(known, ", "), bone.name,
-        fmt::join(bone::vital_structures(bone), ", ")));
+    throw InputError(
+        fmt::format("hints.file {} has safe values near {}, of which bone {} has none; allowed: "
+                    "values near one "
+                    "of its structures: {}",
+                    setup.file, fmt::join(known, ", "), bone.name,
+                    fmt::join(bone::vital_structures(bone), ", ")));
   }
 }
 

@@ -35,8 +35,9 @@ struct HintVoxel {
 /// Limits and distances for the hints on one bone, as it was made. Immutable: any thread.
 class HintMap {
  public:
-  /// @throws InputError where force or speed is judged and the limits know no structure of the bone:
-  /// hints would be silently off; std::invalid_argument for a reach beyond what distance fields have
+  /// @throws InputError where force or speed is judged and the limits know no structure of the
+  /// bone: hints would be silently off; std::invalid_argument for a reach beyond what distance
+  /// fields have
   HintMap(const HintSetup& setup, const bone::BoneModel& bone);
 
   /// A place by what is near and what is safe there.

@@ -88,9 +88,9 @@ void check_amplitudes(const analysis::CsvTable& table, bool acceleration,
   const double most = acceleration ? 1e5 : 100.0;  // [m/s2] or [N]
   for (std::size_t row = 0; row < values.size(); ++row) {
     if (std::abs(values[row]) > most) {
-      table.refuse(row, table.column(acceleration ? "acceleration" : "force"),
-                   fmt::format("at most {:g} [{}]", most,
-                               acceleration ? kAcceleration : sound::kNewton));
+      table.refuse(
+          row, table.column(acceleration ? "acceleration" : "force"),
+          fmt::format("at most {:g} [{}]", most, acceleration ? kAcceleration : sound::kNewton));
     }
   }
 }

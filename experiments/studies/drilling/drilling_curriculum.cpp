@@ -100,9 +100,10 @@ void check_criterion(const bone::Criterion& criterion, const std::vector<std::st
   }
   const double most = 1e3 * drilling::kLeftReach;  // [mm]
   if (drilling::is_bone_left(name) && criterion.value > most) {
-    throw InputError(fmt::format("{} asks for '{}' of {:g} mm; allowed: up to {:g} mm, beyond "
-                                 "which bone left is not measured",
-                                 of, name, criterion.value, most));
+    throw InputError(
+        fmt::format("{} asks for '{}' of {:g} mm; allowed: up to {:g} mm, beyond "
+                    "which bone left is not measured",
+                    of, name, criterion.value, most));
   }
 }
 
@@ -162,8 +163,8 @@ void check_criteria(const protocols::BoneDefinition& d) {
     return;
   }
   for (const bone::CurriculumCase& each : d.curriculum->cases) {
-    const auto source = static_cast<std::size_t>(std::ranges::find(d.sources, each.bone) -
-                                                 d.sources.begin());
+    const auto source =
+        static_cast<std::size_t>(std::ranges::find(d.sources, each.bone) - d.sources.begin());
     const std::vector<std::string> known =
         drilling::quantity_names_on(*d.bones.at(source), d.osteotomy.has_value());
     for (const bone::Criterion& criterion : each.pass) {

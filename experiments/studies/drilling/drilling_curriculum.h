@@ -28,8 +28,8 @@ NextCase next_case_of(const protocols::BoneDefinition& definition,
 void check_curriculum(Table& root, const protocols::BoneDefinition* definition);
 
 /// Checks criteria by the bone of each case. @param definition  with its bones
-/// @throws InputError for a quantity that no procedure on that bone has, and for more bone left than
-/// is measured
+/// @throws InputError for a quantity that no procedure on that bone has, and for more bone left
+/// than is measured
 void check_criteria(const protocols::BoneDefinition& definition);
 
 /// The score that a definition names, if its criteria ask for one.

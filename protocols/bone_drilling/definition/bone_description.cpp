@@ -93,8 +93,8 @@ std::string describe_hints(const BoneDefinition& d) {
                                        setup.file, setup.limits.study);
   std::string judged;
   for (std::size_t n = 0; n < d.hint_maps.size() && setup.needs_limits(); ++n) {
-    judged += fmt::format("; in {} near {}", d.bones[n]->name,
-                          fmt::join(d.hint_maps[n]->judged(), ", "));
+    judged +=
+        fmt::format("; in {} near {}", d.bones[n]->name, fmt::join(d.hint_maps[n]->judged(), ", "));
   }
   return fmt::format("hints: {}, {}{}{}", fmt::join(kinds, ", "), shown, from, judged);
 }

@@ -169,8 +169,9 @@ TEST_F(RatingsTest, EveryWrongLineHasItsSentence) {
               AllOf(HasSubstr("rater.csv"), HasSubstr("CD67 has no line")));
   EXPECT_THAT(complaint(head + "AB34,4,\nAB34,4,\nCD67,1,\n", key_),
               AllOf(HasSubstr(":3:"), HasSubstr("AB34"), HasSubstr("each code once")));
-  EXPECT_THAT(complaint(head + "AB34,4,\nXX99,4,\n", key_),
-              AllOf(HasSubstr(":3:"), HasSubstr("XX99"), HasSubstr("a code of this study's sheet")));
+  EXPECT_THAT(
+      complaint(head + "AB34,4,\nXX99,4,\n", key_),
+      AllOf(HasSubstr(":3:"), HasSubstr("XX99"), HasSubstr("a code of this study's sheet")));
   for (const char* score : {"", "0", "6", "-1", "3.5", "nan", "four", "0x3", "4 5", "1e0"}) {
     EXPECT_THAT(complaint(head + "AB34," + score + ",\nCD67,1,\n", key_),
                 AllOf(HasSubstr(":2:"), HasSubstr("score"), HasSubstr("1, 2, 3, 4 or 5")))

@@ -300,8 +300,7 @@ TEST_F(ImportTest, ValuesThatAreNoNumbersAreCounted) {
     const float value = i % 4 == 0 ? NAN : i < 32 ? -1000.0F : 1200.0F;
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  EXPECT_THAT(load("v.nrrd", bytes).notes,
-              ElementsAre(HasSubstr("16 of the 64 values of")));
+  EXPECT_THAT(load("v.nrrd", bytes).notes, ElementsAre(HasSubstr("16 of the 64 values of")));
 }
 
 // A nerve of one voxel in a block of bone is lost in voxels of four, and the bone is not.

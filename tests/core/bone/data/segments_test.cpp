@@ -89,7 +89,8 @@ TEST_F(SegmentsTest, LayersOfAnyNumberBecomeOneLabelPerVoxel) {
 // 3D Slicer leaves a gap in the numbers where a segment was deleted.
 TEST_F(SegmentsTest, ADeletedSegmentShiftsNoName) {
   const std::string keys = segment(0, "Bone", 1, 0) + segment(2, "Facial_Nerve", 1, 1);
-  const BoneModel model = load("s.seg.nrrd", layered({4, 1, 1}, {{1, 1, 1, 0}, {0, 0, 0, 1}}, keys));
+  const BoneModel model =
+      load("s.seg.nrrd", layered({4, 1, 1}, {{1, 1, 1, 0}, {0, 0, 0, 1}}, keys));
   EXPECT_EQ(name_at(model, {0, 0, 0}), "bone");
   EXPECT_EQ(name_at(model, {3, 0, 0}), "facial nerve");
   const std::string first_gone = segment(1, "Bone", 1, 0) + segment(2, "Facial_Nerve", 1, 1);
@@ -168,8 +169,8 @@ TEST_F(SegmentsTest, WhatLiesBeyondTheScanIsSaid) {
                               ", 10.0 mm3 here",
                           StartsWith("incus, a vital structure, is lost: 17.0 mm3 in " + file +
                                      ", none here")));
-  options.crop = Eigen::AlignedBox3d(1e-3 * Eigen::Vector3d(-10, 0, 0),
-                                     1e-3 * Eigen::Vector3d(25, 50, 50));
+  options.crop =
+      Eigen::AlignedBox3d(1e-3 * Eigen::Vector3d(-10, 0, 0), 1e-3 * Eigen::Vector3d(25, 50, 50));
   EXPECT_THAT(load("scan.nrrd", nrrd_of(scan(0.0)), options).notes, IsEmpty());  // as asked
 }
 
@@ -249,9 +250,10 @@ TEST_F(SegmentsTest, AMeshBecomesAStructureOfItsVolumeInItsPlace) {
   LoadOptions beyond;
   beyond.spacing = 1e-3;
   beyond.meshes = {{"cn vii", folder_ / "far.stl", {}}};
-  EXPECT_THAT(load("scan.nrrd", nrrd_of(scan(0.0)), beyond).notes,
-              ElementsAre(AllOf(HasSubstr("facial nerve, a vital structure, is lost in part: 250.0"),
-                                HasSubstr("far.stl, "))));
+  EXPECT_THAT(
+      load("scan.nrrd", nrrd_of(scan(0.0)), beyond).notes,
+      ElementsAre(AllOf(HasSubstr("facial nerve, a vital structure, is lost in part: 250.0"),
+                        HasSubstr("far.stl, "))));
   LoadOptions wrong;
   wrong.meshes = {{"cn vii", folder_ / "lps.stl", true}};
   EXPECT_THAT(test::message_of([&] { load("scan.nrrd", nrrd_of(scan(0.0)), wrong); }),
