@@ -296,6 +296,13 @@ std::vector<fs::path> files_of(const fs::path& folder, Pilots pilots) {
   return taken(sorted_files(folder), folder, pilots);
 }
 
+std::vector<fs::path> files_of_one_study(const fs::path& folder,
+                                         const protocols::Protocol& protocol) {
+  const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
+  static_cast<void>(definition_remarks(protocol, files));
+  return files;
+}
+
 StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& protocol_of) {
   const Sorted sorted = sorted_files(folder);
   StudyFiles study;

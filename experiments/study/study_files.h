@@ -44,6 +44,11 @@ DistinctSessions distinct_sessions(const std::vector<std::filesystem::path>& fil
 /// @throws InputError when there are none.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder, Pilots pilots);
 
+/// files_of() of a study from which something is learned; pilots are left out.
+/// @throws InputError also as definition_remarks() does, as when analysing the study.
+std::vector<std::filesystem::path> files_of_one_study(const std::filesystem::path& folder,
+                                                      const protocols::Protocol& protocol);
+
 /// The names of the files of unfinished sessions in a folder, sorted; empty for no folder.
 std::vector<std::string> unfinished_sessions(const std::filesystem::path& folder);
 

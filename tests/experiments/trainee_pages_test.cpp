@@ -111,7 +111,15 @@ TEST(TraineePagesTest, AScoreOfARatedStudyStandsOnTheNextTraineesPage) {
       other.path(), "1", {{"time_limit", "time_limit = 4.0"}, {"procedures", "procedures = 1"}},
       "\n[feedback]\npage = true\nscore = \"" + score + "\"\n");
   EXPECT_THAT(test::read_text(out / "S01.html"),
-              HasSubstr("it was learned with another time limit (3 s; here 4 s)"));
+              HasSubstr("it was learned with another drilling.time_limit (3 s; here 4 s)"));
+
+  fs::copy_file(out / "S01.h5", study / "S06.h5");  // does not belong to the study
+  for (const std::string command :
+       {learn + " --overwrite", "haptrial bone phases " + study.string() + " --number 2"}) {
+    const auto mixed = run_command(command);
+    EXPECT_EQ(mixed.status, 2) << command;
+    EXPECT_THAT(mixed.errors, HasSubstr("was recorded with another definition than")) << command;
+  }
 }
 
 }  // namespace

@@ -66,11 +66,16 @@ std::string other_case(const ScoreModel& model, const ProcedureSummary& summary,
   if (std::count(model.bones.begin(), model.bones.end(), bone_digest(*summary.bone)) == 0) {
     return "it was learned on another bone";
   }
-  for (const auto& [name, value] : model.rules) {
-    const auto own = rules.find(name);
-    if (own == rules.end() || own->second != value) {
-      return fmt::format("it was learned with another {} ({}; here {})", name, value,
-                         own == rules.end() ? "none" : own->second);
+  std::map<std::string, std::string> all = model.rules;
+  all.insert(rules.begin(), rules.end());
+  const auto value_in = [](const std::map<std::string, std::string>& in, const std::string& name) {
+    const auto at = in.find(name);
+    return at == in.end() ? std::string("none") : at->second;
+  };
+  for (const auto& [name, ignored] : all) {
+    const std::string learned = value_in(model.rules, name), here = value_in(rules, name);
+    if (learned != here) {
+      return fmt::format("it was learned with another {} ({}; here {})", name, learned, here);
     }
   }
   return "";
@@ -148,9 +153,16 @@ Defined<Score> score_of(const ScoreModel& model, const ProcedureSummary& summary
 }
 
 std::string bone_digest(const bone::BoneModel& bone) {
+  constexpr float kDensities = 255.0F;  // as files hold them
   std::string text = fmt::format("{} {} {} {}\n", bone.grid.size[0], bone.grid.size[1],
                                  bone.grid.size[2], bone.grid.spacing);
   text.append(bone.labels.begin(), bone.labels.end());
+  for (const float density : bone.density) {
+    text += static_cast<char>(std::lround(kDensities * std::clamp(density, 0.0F, 1.0F)));
+  }
+  for (const bone::Structure& structure : bone.structures) {
+    text += fmt::format("\n{} {} {}", structure.name, structure.hardness, structure.vital);
+  }
   return sha256_of(text);
 }
 

@@ -34,7 +34,7 @@ struct ScoreModel {
   double r{0.0};           // of ratings and predictions for participants left out
   std::vector<ScoreMetric> metrics;
   std::vector<std::string> bones;            // digests of bone_digest()
-  std::map<std::string, std::string> rules;  // what else makes a case: "tools", "cavity", ...
+  std::map<std::string, std::string> rules;  // what else makes a case, by key: score_rules()
 };
 
 /// A procedure of the study that the score is learned on.
@@ -68,7 +68,7 @@ struct Score {
 Defined<Score> score_of(const ScoreModel& model, const ProcedureSummary& summary,
                         const std::map<std::string, std::string>& rules);
 
-/// Labels and grid of a bone in 64 hexadecimal digits.
+/// Labels, densities, structures and grid of a bone in 64 hexadecimal digits.
 std::string bone_digest(const bone::BoneModel& bone);
 
 /// As a file (JSON).

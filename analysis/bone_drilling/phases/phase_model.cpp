@@ -1,13 +1,16 @@
 #include "analysis/bone_drilling/phases/phase_model.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <set>
 
+#include "core/base/error.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis::drilling {
@@ -328,9 +331,38 @@ std::vector<int> phases_of(const PhaseModel& model, std::span<const Action> acti
                          : most_probable_path(model.chain, emission_of(model, actions)).states;
 }
 
+namespace {
+
+/// @throws InputError if a model knows no word of one fact about a procedure's actions, but "none"
+void require_known(const PhaseModel& model, std::span<const Action> actions, ActionWord which,
+                   const char* what) {
+  const std::vector<std::string>& known = model.words[static_cast<std::size_t>(which)].words;
+  std::set<std::string> own;
+  for (const Action& action : actions) {
+    own.insert(action.words[static_cast<std::size_t>(which)]);
+  }
+  own.erase("none");
+  if (!own.empty() && std::ranges::none_of(own, [&](const std::string& word) {
+        return std::ranges::find(known, word) != known.end();
+      })) {
+    throw InputError(
+        fmt::format("phases of study \"{}\" know none of the {} of this procedure ({}); learn them "
+                    "from a study with the same",
+                    model.study, what, fmt::join(own, ", ")));
+  }
+}
+
+}  // namespace
+
+void require_known_words(const PhaseModel& model, std::span<const Action> actions) {
+  require_known(model, actions, ActionWord::kTool, "tools");
+  require_known(model, actions, ActionWord::kStructure, "vital structures");
+}
+
 std::vector<PhaseSpan> divide(const PhaseModel& model, const Procedure& procedure,
                               StudyBones& bones) {
   const std::vector<Action> actions = actions_of(procedure, bones);
+  require_known_words(model, actions);
   const std::vector<int> phases = phases_of(model, actions);
   std::vector<PhaseSpan> spans;
   for (std::size_t t = 0; t < actions.size(); ++t) {

@@ -60,7 +60,11 @@ Eigen::MatrixXd emission_of(const PhaseModel& model, std::span<const Action> act
 /// The most probable phase of every action.
 std::vector<int> phases_of(const PhaseModel& model, std::span<const Action> actions);
 
-/// The phases of a procedure.
+/// @throws InputError for actions on another bone or with other tools: if the model knows none of
+/// the tools in hand, or none of the structures that they came near
+void require_known_words(const PhaseModel& model, std::span<const Action> actions);
+
+/// The phases of a procedure. @throws InputError as require_known_words() does
 std::vector<PhaseSpan> divide(const PhaseModel& model, const Procedure& procedure,
                               StudyBones& bones);
 

@@ -18,6 +18,11 @@ namespace {
 constexpr const char* kAbsent = "absent";
 using Values = std::map<std::string, std::string>;  // by the key's full path
 
+/// Whether a key is that of a name, or in the table of that name.
+bool is_within(std::string_view key, std::string_view name) {
+  return key == name || (key.starts_with(name) && key[name.size()] == '.');
+}
+
 /// In one form: 1, 1.0 and 1e0 are the same number.
 std::string normal(const toml::node& node) {
   if (const auto* array = node.as_array()) {
@@ -120,12 +125,10 @@ DefinitionChange change_of(const std::string& key, const std::string& was, const
 }  // namespace
 
 bool DefinitionRules::may_change(std::string_view key) const {
-  const auto within = [key](const std::string& name) {
-    return key == name || (key.starts_with(name) && key[name.size()] == '.');
-  };
-  return std::any_of(free.begin(), free.end(), within) &&
+  return std::any_of(free.begin(), free.end(),
+                     [&](const std::string& name) { return is_within(key, name); }) &&
          std::none_of(bound.begin(), bound.end(),
-                      [&](const BoundKey& exception) { return within(exception.key); });
+                      [&](const BoundKey& exception) { return is_within(key, exception.key); });
 }
 
 void DefinitionRules::add(const DefinitionRules& more) {
@@ -165,6 +168,16 @@ DefinitionChanges definition_changes(std::string_view before, std::string_view a
     }
   }
   return changes;
+}
+
+std::map<std::string, std::string> definition_values(std::string_view definition,
+                                                     std::span<const std::string> names) {
+  Values values = values_of(definition, {});
+  std::erase_if(values, [&](const auto& value) {
+    return std::none_of(names.begin(), names.end(),
+                        [&](const std::string& name) { return is_within(value.first, name); });
+  });
+  return values;
 }
 
 std::optional<std::uint64_t> table_fingerprint(std::string_view definition,

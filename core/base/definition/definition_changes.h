@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,6 +50,11 @@ struct DefinitionChanges {
 /// is not TOML: files may hold anything.
 DefinitionChanges definition_changes(std::string_view before, std::string_view after,
                                      const DefinitionRules& rules);
+
+/// Values of some tables and keys of a definition by the keys' full paths, each in one form, as
+/// definition_changes() compares them. @throws InputError for a text that is not TOML
+std::map<std::string, std::string> definition_values(std::string_view definition,
+                                                     std::span<const std::string> names);
 
 /// A number that equal values of a table of the definition share and different values, but for one
 /// case in 2^64, do not; comments, layout and the order of keys do not count.

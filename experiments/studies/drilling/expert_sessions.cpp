@@ -10,8 +10,10 @@
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/procedure_setup.h"
+#include "experiments/study/study_definitions.h"
 #include "experiments/study/study_files.h"
 #include "experiments/study/study_run.h"
+#include "protocols/bone_drilling/bone_protocol.h"
 
 namespace haptrial::experiments {
 
@@ -43,6 +45,7 @@ void ExpertSessions::add(const fs::path& file) {
 
 void ExpertSessions::add_study(const fs::path& folder) {
   const std::size_t before = procedures_.size();
+  std::vector<fs::path> experts;
   for (const fs::path& file : distinct_sessions(session_files(folder)).files) {
     const record::SessionReader reader(file);
     const record::SessionInfo& info = reader.info();
@@ -56,8 +59,14 @@ void ExpertSessions::add_study(const fs::path& folder) {
       return group.expert && group.name == own;
     });
     if (expert) {
-      add(file);
+      experts.push_back(file);
     }
+  }
+  if (!experts.empty()) {
+    static_cast<void>(definition_remarks(protocols::bone_drilling(), experts));
+  }
+  for (const fs::path& file : experts) {
+    add(file);
   }
   if (procedures_.size() == before) {
     throw InputError(

@@ -32,7 +32,7 @@ class ExpertSessions {
   /// Every procedure of a session, whoever that is.
   void add(const std::filesystem::path& file);
   /// The sessions of a study's expert groups; pilots are left out.
-  /// @throws InputError where it has none
+  /// @throws InputError where it has none, or they are of different definitions
   void add_study(const std::filesystem::path& folder);
 
   const std::vector<ExpertSession>& procedures() const { return procedures_; }

@@ -15,6 +15,7 @@
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_files.h"
+#include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
@@ -125,7 +126,7 @@ T value_or_refuse(const PhasesRequest& request, const analysis::Defined<T>& lear
 }  // namespace
 
 LearnedPhases learn_study_phases(const PhasesRequest& request) {
-  const std::vector<fs::path> files = files_of(request.study, Pilots::kLeftOut);
+  const std::vector<fs::path> files = files_of_one_study(request.study, protocols::bone_drilling());
   const std::vector<Observed> observed = observe_study(request, files);
   std::vector<drilling::PhaseCase> cases;
   LearnedPhases learned;

@@ -25,8 +25,8 @@ struct LearnedPhases {
   analysis::Defined<analysis::drilling::PhaseAccuracy> accuracy{analysis::Undefined{""}};
 };
 
-/// @throws InputError where nobody labelled, labels name procedures that are not there, or there is
-/// too little of a phase.
+/// @throws InputError where sessions are of different definitions, nobody labelled, labels name
+/// procedures that are not there, or there is too little of a phase.
 LearnedPhases learn_study_phases(const PhasesRequest& request);
 
 /// Divides procedures by the model of a file. @throws InputError as read_phase_model() does

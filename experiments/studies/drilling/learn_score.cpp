@@ -6,11 +6,13 @@
 #include <set>
 
 #include "analysis/bone_drilling/report/ratings.h"
+#include "core/base/definition/definition_changes.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/study/study_files.h"
+#include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
@@ -18,27 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 namespace drilling = analysis::drilling;
-
-std::string words_of(const subject::CavityParameters& c) {
-  std::string words = fmt::format(
-      "beside {}, offset ({:g}, {:g}, {:g}) mm, inward ({:g}, {:g}, "
-      "{:g}), radius {:g} mm, slope {:g}, margin {:g} mm",
-      c.beside, 1e3 * c.offset_B.x(), 1e3 * c.offset_B.y(), 1e3 * c.offset_B.z(), c.inward.x(),
-      c.inward.y(), c.inward.z(), 1e3 * c.radius, c.slope, 1e3 * c.margin);
-  for (std::size_t s = 0; s < c.structures.size(); ++s) {
-    words += fmt::format(", {} {:g} mm", c.structures[s], 1e3 * c.margins[s]);
-  }
-  return words;
-}
-
-std::string words_of(const bone::ToolSpec& tool) {
-  const auto* burr = tool.as<bone::BurrTool>();
-  return burr == nullptr
-             ? tool.name
-             : fmt::format("{} ({} burr of {:g} mm, rate {:g})", tool.name,
-                           burr->burr.kind == bone::BurrKind::kCutting ? "cutting" : "diamond",
-                           1e3 * burr->burr.diameter, burr->burr.removal_rate);
-}
 
 /// Mean of a procedure's ratings; nothing if nobody rated it.
 std::optional<double> mean_rating(const std::vector<drilling::Rating>& ratings,
@@ -86,14 +67,14 @@ void add_case(const fs::path& session, drilling::ScoreModel& model,
 }  // namespace
 
 std::map<std::string, std::string> score_rules(const protocols::BoneDefinition& d) {
-  std::string tools;
-  for (const bone::ToolSpec& tool : d.simulator.tools) {
-    tools += (tools.empty() ? "" : ", ") + words_of(tool);
-  }
-  return {{"cavity", d.cavity ? words_of(*d.cavity) : "none"},
-          {"set of tools", tools},
-          {"time limit", fmt::format("{:g} s", d.drilling.time_limit)},
-          {"scale", fmt::format("{:g}", d.drilling.scale)}};
+  static const std::vector<std::string> kTables{"tools",       "cavity", "osteotomy",
+                                                "forbidden",   "heat",   "bleeding",
+                                                "soft_tissue", "pieces", "second_hand"};
+  std::map<std::string, std::string> rules = definition_values(d.text, kTables);
+  rules["drilling.time_limit"] = fmt::format("{:g} s", d.drilling.time_limit);
+  rules["drilling.scale"] = fmt::format("{:g}", d.drilling.scale);
+  rules["drilling.force_limit"] = fmt::format("{:g} N", d.drilling.force_limit);
+  return rules;
 }
 
 drilling::ScoreModel learn_study_score(const fs::path& folder) {
@@ -104,7 +85,7 @@ drilling::ScoreModel learn_study_score(const fs::path& folder) {
         folder.string(), kRatingsFile));
   }
   const std::vector<drilling::Rating> ratings = drilling::load_ratings(table);
-  const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
+  const std::vector<fs::path> files = files_of_one_study(folder, protocols::bone_drilling());
   const drilling::SafeOptions options;
   drilling::StudyBones bones;
   ExpertSessions sessions(options, bones);

@@ -12,13 +12,15 @@ struct BoneDefinition;
 
 namespace haptrial::experiments {
 
-/// Parts of a case besides its bone, in words that people can compare: cavity, tools, time limit
-/// and scale of a definition (ScoreModel::rules).
+/// Parts of a case besides its bone by the keys of a definition (ScoreModel::rules): all of its
+/// tables of tools, cavity, osteotomy, tissue and forbidden regions; time limit, scale and greatest
+/// force.
 std::map<std::string, std::string> score_rules(const protocols::BoneDefinition& definition);
 
 /// The score of a rated study, from its sessions and ratings; pilots and marked trials are left
 /// out.
-/// @throws InputError where nothing is rated or too few participants are, or a file is damaged.
+/// @throws InputError where sessions are of different definitions, nothing is rated or too few
+/// participants are, or a file is damaged.
 analysis::drilling::ScoreModel learn_study_score(const std::filesystem::path& folder);
 
 }  // namespace haptrial::experiments

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -112,6 +113,9 @@ TEST(ScoreTest, AnotherCaseIsRefusedInASentence) {
   };
   EXPECT_EQ(refusal({{"cavity", "none"}, {"time limit", "90 s"}}),
             "it was learned with another time limit (60 s; here 90 s)");
+  std::map<std::string, std::string> more = kRules;
+  more["forbidden.margin"] = "0.001";
+  EXPECT_EQ(refusal(more), "it was learned with another forbidden.margin (none; here 0.001)");
   ++model.version;
   EXPECT_THAT(refusal(kRules), HasSubstr("its metrics are of version"));
   --model.version;
@@ -120,6 +124,12 @@ TEST(ScoreTest, AnotherCaseIsRefusedInASentence) {
   next.summary.values[0] = 0.5;
   next.summary.bone = std::make_shared<const bone::BoneModel>(test::block(3, 3, 4));
   EXPECT_EQ(refusal(kRules), "it was learned on another bone");
+  bone::BoneModel soft = test::block(3, 3, 4), soft_structure = soft;
+  soft.density.assign(soft.labels.size(), 0.5F);
+  soft_structure.structures.at(1).hardness *= 0.5;
+  const std::set<std::string> digests{bone_digest(test::block(3, 3, 4)), bone_digest(soft),
+                                      bone_digest(soft_structure)};
+  EXPECT_EQ(digests.size(), 3u) << "the same labels, another bone";
 }
 
 TEST(ScoreTest, AFileGivesTheSameScore) {

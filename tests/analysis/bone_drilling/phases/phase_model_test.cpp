@@ -8,6 +8,7 @@
 
 #include "analysis/bone_drilling/phases/phase_accuracy.h"
 #include "tests/analysis/bone_drilling/phases/made_actions.h"
+#include "tests/support/message_of.h"
 
 namespace haptrial::analysis::drilling::phase_model_test {
 namespace {
@@ -106,6 +107,29 @@ TEST(PhaseModelTest, AWordThatNobodyHeardIsNoImpossibility) {
   const Eigen::MatrixXd emission = emission_of(*model, std::span(&strange, 1));
   EXPECT_TRUE(emission.allFinite());
   EXPECT_EQ(phases_of(*model, {}).size(), 0u);
+}
+
+TEST(PhaseModelTest, OtherToolsOrAnotherBoneAreRefused) {
+  const auto cases = test::made_cases(1.0, 5);
+  const PhaseModel model = *learn_phases(cases, kNames);
+  const auto refusal = [&](ActionWord which, const char* word) {
+    std::vector<Action> actions = cases[0].actions;
+    for (Action& action : actions) {
+      action.word(which) = word;
+    }
+    return test::message_of([&] { require_known_words(model, actions); });
+  };
+  EXPECT_THAT(refusal(ActionWord::kTool, "saw at work"),
+              testing::HasSubstr("none of the tools of this procedure (saw at work)"));
+  EXPECT_THAT(
+      refusal(ActionWord::kStructure, "alveolar nerve"),
+      testing::HasSubstr("none of the vital structures of this procedure (alveolar nerve)"));
+  std::vector<Action> far = cases[0].actions;
+  for (Action& action : far) {
+    action.word(ActionWord::kStructure) = "none";
+  }
+  far.front().word(ActionWord::kTool) = "suction";
+  EXPECT_NO_THROW(require_known_words(model, far)) << "a new tool among known ones";
 }
 
 TEST(PhaseModelTest, TooLittleIsSaid) {

@@ -132,5 +132,17 @@ TEST(DefinitionChangesTest, ATableHasAFingerprintOfItsValues) {
   EXPECT_FALSE(table_fingerprint("[a\nx = ", "a"));
 }
 
+TEST(DefinitionValuesTest, AreThoseOfTheNamedTablesAndKeys) {
+  const std::vector<std::string> names{"tools", "drilling.scale"};
+  const auto values = definition_values(
+      "[tools]\nin_hand = [\"a\"]\n[tools.a]\nfalloff = 25.0\n[toolset]\nx = 1\n[drilling]\nscale "
+      "= 2\n"
+      "other = 1\n",
+      names);
+  EXPECT_EQ(values,
+            (std::map<std::string, std::string>{
+                {"tools.in_hand", "[\"a\"]"}, {"tools.a.falloff", "25"}, {"drilling.scale", "2"}}));
+}
+
 }  // namespace
 }  // namespace haptrial
