@@ -1,6 +1,7 @@
 #include "analysis/psychophysics/exchange/imported_trials.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "analysis/files/csv.h"
 #include "analysis/files/sha256.h"
@@ -196,6 +198,7 @@ class TableRows {
     return 0;
   }
 
+  /// The number, if it is one, beside its text; settle_factors() keeps one of them.
   ImportedValue value(std::size_t row, std::size_t at) const {
     const std::string_view text = table_.text(row, at);
     if (is_missing(text) || text.size() > record::kTrialWordBytes) {
@@ -203,9 +206,7 @@ class TableRows {
                     "a number or a word of at most 64 bytes; rows that are no trials go by --only "
                     "COLUMN=VALUE");
     }
-    const auto number = number_in(text);
-    return number ? ImportedValue{*number, ""}
-                  : ImportedValue{std::numeric_limits<double>::quiet_NaN(), std::string(text)};
+    return {number_in(text).value_or(std::numeric_limits<double>::quiet_NaN()), std::string(text)};
   }
 
   const CsvTable& table_;
@@ -234,16 +235,34 @@ void read_table(const fs::path& file, ImportedStudy& study) {
   }
 }
 
-/// A factor with a word somewhere has words everywhere.
+/// Warns of numbers that are written in several ways: 01 and 1 may have been meant as two codes.
+void warn_of_spellings(ImportedStudy& study, std::size_t factor) {
+  std::map<double, std::set<std::string>> spellings;
+  for (const ImportedTrial& trial : study.trials) {
+    spellings[trial.factors[factor].number].insert(trial.factors[factor].word);
+  }
+  for (const auto& [number, texts] : spellings) {
+    if (texts.size() > 1) {
+      study.warnings.push_back(
+          fmt::format("WARNING: {} in {} are the same number and are taken for one level.",
+                      fmt::join(texts, ", "), study.columns.factors[factor].column));
+    }
+  }
+}
+
+/// A factor with a word somewhere has words everywhere, each as its field spells it.
 void settle_factors(ImportedStudy& study) {
   for (std::size_t f = 0; f < study.columns.factors.size(); ++f) {
-    const bool words = std::ranges::any_of(
-        study.trials, [&](const ImportedTrial& trial) { return !trial.factors[f].word.empty(); });
+    const bool words = std::ranges::any_of(study.trials, [&](const ImportedTrial& trial) {
+      return std::isnan(trial.factors[f].number);
+    });
+    if (!words) {
+      warn_of_spellings(study, f);
+    }
     for (ImportedTrial& trial : study.trials) {
-      if (words && trial.factors[f].word.empty()) {
-        trial.factors[f] = {std::numeric_limits<double>::quiet_NaN(),
-                            fmt::format("{}", trial.factors[f].number)};
-      }
+      ImportedValue& value = trial.factors[f];
+      value = words ? ImportedValue{std::numeric_limits<double>::quiet_NaN(), value.word}
+                    : ImportedValue{value.number, ""};
     }
   }
 }

@@ -48,6 +48,7 @@ struct ImportedStudy {
   std::vector<ImportedTrial> trials;
   std::size_t left_out{0};    // rows that are no trials
   std::size_t unanswered{0};  // trials without an answer
+  std::vector<std::string> warnings;  // of what may not have been meant; each a sentence
 };
 
 /// Reads tables of one study. A row without a value in all of the columns that say what was

@@ -96,6 +96,9 @@ int import(const ImportOptions& options) {
              haptrial::counted(done.sessions, "session", "sessions"),
              haptrial::counted(done.left_out, "row", "rows"),
              haptrial::counted(done.unanswered, "trial", "trials"));
+  for (const std::string& warning : done.warnings) {
+    fmt::print(stderr, "{}\n", warning);
+  }
   fmt::print("study: {}\n", options.out);
   return 0;
 }

@@ -144,7 +144,8 @@ ImportSummary summary_of(const trials::ImportedStudy& study, const Sessions& ses
   for (const auto& [key, own] : sessions) {
     people.insert(key.first);
   }
-  return {people.size(), sessions.size(), study.trials.size(), study.left_out, study.unanswered};
+  return {people.size(),  sessions.size(),  study.trials.size(),
+          study.left_out, study.unanswered, study.warnings};
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct ImportSummary {
   std::size_t trials{0};
   std::size_t left_out{0};    // rows that are no trials
   std::size_t unanswered{0};  // trials without an answer
+  std::vector<std::string> warnings;
 };
 
 /// Writes a session file for each participant's session and the definition, study.toml, into a

@@ -19,6 +19,7 @@ namespace {
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
+using testing::IsEmpty;
 
 // As PsychoPy 2023 writes it: a comma at the end of each line, a row for the instructions.
 constexpr const char* kPsychoPy =
@@ -153,6 +154,32 @@ TEST_F(ImportedTrialsTest, FactorsWithAWordAreWords) {
   EXPECT_EQ(study.trials[0].factors[0].word, "2");
   EXPECT_THAT(imported_definition(study, {"study", "none", "", {}}),
               HasSubstr("mass = [\"2\", \"full\"]"));
+}
+
+TEST_F(ImportedTrialsTest, WordsKeepTheSpellingOfTheirFields) {
+  const std::string text = "subject,correct,code\na,1,1\na,0,01\na,1,1.0\na,1,x\n";
+  TrialColumns columns = guessed(text);
+  add_factor("code", columns);
+  const ImportedStudy study = read(text, columns);
+  std::vector<std::string> words;
+  for (const ImportedTrial& trial : study.trials) {
+    words.push_back(trial.factors[0].word);
+  }
+  EXPECT_THAT(words, ElementsAre("1", "01", "1.0", "x"));
+  EXPECT_TRUE(std::isnan(study.trials[0].factors[0].number));
+  EXPECT_THAT(study.warnings, IsEmpty());
+}
+
+TEST_F(ImportedTrialsTest, SpellingsOfOneNumberAreSaid) {
+  const std::string text = "subject,correct,code\na,1,1\na,0,01\na,1,2\na,1,2\n";
+  TrialColumns columns = guessed(text);
+  add_factor("code", columns);
+  const ImportedStudy study = read(text, columns);
+  EXPECT_EQ(study.trials[1].factors[0].number, 1.0);
+  EXPECT_EQ(study.trials[1].factors[0].word, "");
+  EXPECT_THAT(study.warnings,
+              ElementsAre("WARNING: 01, 1 in code are the same number and are taken for one "
+                          "level."));
 }
 
 TEST_F(ImportedTrialsTest, NamesThatTheAnalysisHasAreNoFactors) {
