@@ -274,6 +274,28 @@ TEST_F(TrialsImportTest, WhatWasImportedIsExportedIfNoTimesAreNeeded) {
   }
 }
 
+TEST_F(TrialsImportTest, AnAnalysisThatNothingJudgesIsRefused) {
+  test::write_text(folder_ / "t.csv",
+                   "participant,first,second,answer\nP1,A,B,first\nP1,B,A,second\n");
+  const std::string table = "haptrial import " + path("t.csv") + " --factor first --factor second";
+  ASSERT_EQ(run_command(table + " --out " + path("plain")).status, 0);
+  std::string text = test::read_text(folder_ / "plain/study.toml");
+  const std::string kind = "kind = \"none\"\n";
+  ASSERT_NE(text.find(kind), std::string::npos) << text;
+  text.replace(text.find(kind), kind.size(),
+               "kind = \"paired\"\nfirst = \"first\"\nsecond = \"second\"\n");
+  test::write_text(folder_ / "pairs.toml", text);
+  const CommandResult run = run_command("haptrial import " + path("t.csv") + " --definition " +
+                                        path("pairs.toml") + " --out " + path("pairs"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("no column says whether answers are right"));
+  EXPECT_FALSE(fs::exists(folder_ / "pairs"));
+  const std::string validate = "haptrial validate " + path("pairs.toml");
+  EXPECT_THAT(run_command(validate).output, HasSubstr("nothing says which answers are right"));
+  test::write_text(folder_ / "pairs.toml", text + "yes = \"first\"\n");
+  EXPECT_THAT(run_command(validate).output, Not(HasSubstr("nothing says")));
+}
+
 TEST_F(TrialsImportTest, AMistakeIsASentenceAndLeavesNothing) {
   test::write_text(folder_ / "t.csv", "subject,level,correct\nP1,1,1\nP1,two,0\n");
   const auto refused = [&](const std::string& more) {

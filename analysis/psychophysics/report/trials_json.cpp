@@ -97,6 +97,10 @@ Json scores_json(const std::vector<PageScore>& scores) {
   return all;
 }
 
+Json to_json(const UnusedTrials& unused) {
+  return {{"count", unused.count}, {"because", unused.because}};
+}
+
 Json to_json(const CueTest& test) {
   return {{"test", to_json(test.test)}, {"p_holm", to_json(test.holm)}};
 }
@@ -224,6 +228,9 @@ class ResultsJson {
     }
     if (const Json own = json_of(own_); !own.empty()) {
       add("own_findings", own);
+    }
+    if (!result_.unused.empty()) {
+      add_list("unused_trials", result_.unused);
     }
     add("remarks", result_.remarks);
   }

@@ -296,10 +296,23 @@ std::string trials_line(const TrialsResult& result) {
                      result.simulated() ? " (simulated)" : "");
 }
 
+void say_unused(const TrialsResult& result, std::vector<std::string>& lines) {
+  std::size_t all = 0;
+  for (const ParticipantTrials& person : result.participants) {
+    all += person.counted;
+  }
+  for (const UnusedTrials& unused : result.unused) {
+    lines.push_back(fmt::format("{} of {} {} not analysed, because {}", unused.count,
+                                counted(all, "trial"), unused.count == 1 ? "is" : "are",
+                                unused.because));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> summary_lines(const TrialsResult& result) {
   std::vector<std::string> lines{trials_line(result)};
+  say_unused(result, lines);
   for (const StudySession& session : result.data.sessions) {
     if (!session.ended_early.empty()) {
       lines.push_back(fmt::format("trials are missing: {} {}", session.file, session.ended_early));

@@ -18,6 +18,7 @@
 #include "analysis/psychophysics/study/population.h"
 #include "analysis/psychophysics/study/quantity.h"
 #include "analysis/psychophysics/study/timed.h"
+#include "analysis/psychophysics/study/unused_trials.h"
 
 namespace haptrial::analysis::trials {
 
@@ -41,6 +42,7 @@ struct TrialsResult {
   TrialsPlan plan;
   TrialsData data;
   std::vector<ParticipantTrials> participants;  // by name
+  std::vector<UnusedTrials> unused;             // trials that enter no estimate
   std::vector<AnsweredSeries> series;           // whose functions are fitted
   std::vector<FunctionFit> fits;                // (series)
   std::vector<SurfaceCondition> surfaces;       // functions of several variables

@@ -464,6 +464,7 @@ TrialsResult analyze(TrialsData data, const TrialsPlan& plan, const ProcedureOf&
     throw InputError("no session holds a completed trial of the study, so nothing can be analysed");
   }
   result.participants = participants_of(result.data, plan);
+  result.unused = unused_trials(result.data, plan);
   result.tracks = track_estimates(result.data, procedure_of);
   if (plan.track_intervals) {
     add_track_intervals(result.tracks, plan, procedure_of, threads);

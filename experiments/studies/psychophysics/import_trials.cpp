@@ -108,6 +108,19 @@ trials::ImportedNames names_of(const TrialsDefinition& d, const trials::TrialsPl
   return names;
 }
 
+/// @throws InputError if no column says what the analysis counts
+void check_judged(const TrialsDefinition& d, const trials::TrialsPlan& plan,
+                  const trials::TrialColumns& columns) {
+  const bool identifies = plan.kind == trials::AnalysisKind::kIdentification;
+  const bool learnt = !identifies && (!columns.outcome.empty() || !d.tracks.empty());
+  if (needs_judged_answers(plan) && columns.correct.empty() && !learnt) {
+    throw InputError(fmt::format(
+        "no column says whether answers are right, which this kind of analysis counts; add "
+        "--column correct=COLUMN{}",
+        identifies ? "" : ", or the answer that counts 1, by --yes ANSWER or analysis.yes"));
+  }
+}
+
 record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTrial& first) {
   record::SessionInfo info;
   info.program_version = program_version();
@@ -164,7 +177,9 @@ ImportSummary import_trials(TrialsImport request) {
     study = trials::read_trial_tables(request.files, request.columns);
   }
   const TrialsDefinition& definition = stated_trials(experiment);
-  const trials::ImportedNames names = names_of(definition, plan_of(definition), study.columns);
+  const trials::TrialsPlan plan = plan_of(definition);
+  check_judged(definition, plan, study.columns);
+  const trials::ImportedNames names = names_of(definition, plan, study.columns);
   const Sessions sessions = sessions_of(study, definition);
   exchange::NewFolder out(request.out);
   for (const auto& [key, own] : sessions) {

@@ -252,6 +252,12 @@ analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definiti
   return plan;
 }
 
+bool needs_judged_answers(const analysis::trials::TrialsPlan& plan) {
+  return plan.kind == AnalysisKind::kIdentification ||
+         (plan.yes.empty() &&
+          (plan.kind == AnalysisKind::kPsychometric || plan.kind == AnalysisKind::kPaired));
+}
+
 analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition) {
   return [&definition](const std::string& name) -> std::unique_ptr<psychometric::Procedure> {
     for (const protocols::Track& track : definition.tracks) {

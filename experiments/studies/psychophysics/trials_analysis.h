@@ -24,6 +24,9 @@ analysis::trials::TrialsPlan read_trials_analysis(Table& root,
 /// The plan of a definition that was read. @throws InputError for what is wrong with the table
 analysis::trials::TrialsPlan plan_of(const protocols::TrialsDefinition& definition);
 
+/// Whether an analysis counts answers 1 or 0, and its plan alone does not say which.
+bool needs_judged_answers(const analysis::trials::TrialsPlan& plan);
+
 /// Begins the procedures of a definition anew, by the names that /levels has.
 /// @param definition  outlives it
 analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition);

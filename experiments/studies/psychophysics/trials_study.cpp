@@ -189,10 +189,29 @@ class TrialsStudy final : public Study {
   }
 };
 
+/// Whether sessions of a definition judge the answers that are analysed, by a formula or what a
+/// procedure learns.
+bool judges_answers(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
+  const auto question = std::ranges::find_if(d.questions, [&](const auto& each) {
+    return plan.question.empty() || each.name == plan.question;
+  });
+  return (question != d.questions.end() && !question->correct.empty()) ||
+         (plan.question.empty() && !d.tracks.empty());
+}
+
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
   const trials::TrialsPlan plan = plan_of(trials_of(d));
   std::vector<std::string> warnings =
       analysis::sequential_warnings(plan.plan, d.design.participants);
+  if (needs_judged_answers(plan) && !judges_answers(trials_of(d), plan)) {
+    warnings.push_back(fmt::format(
+        "nothing says which answers are right, so that sessions give the analysis nothing to "
+        "count; add correct = FORMULA to [[responses]]{}; only imported trials may have it in a "
+        "column",
+        plan.kind == trials::AnalysisKind::kIdentification
+            ? ""
+            : ", or yes = \"ANSWER\", which counts 1, to [analysis]"));
+  }
   if (plan.level_assumed && plan.uses_level()) {
     warnings.push_back(
         fmt::format("procedures set several variables, and analysis.level names none of them; "

@@ -42,6 +42,20 @@ TrialsData people(std::initializer_list<const char*> names) {
   return data;
 }
 
+TEST(IdentifiedTest, SaysWhyTrialsDoNotCount) {
+  TrialsData data = people({"P01"});
+  for (int i = 0; i < 3; ++i) {
+    add(data, 0, "sphere", "egg", 1);
+    data.trials.back().answers[0].correct = -1;
+  }
+  add(data, 0, "sphere", "sphere", 4);
+  EXPECT_EQ(identified(data, plan())[0].trials, 1);
+  const auto unused = unused_trials(data, plan());
+  ASSERT_EQ(unused.size(), 1u);
+  EXPECT_EQ(unused[0].count, 3u);
+  EXPECT_EQ(unused[0].because, "nothing says which answer is right");
+}
+
 TEST(IdentifiedTest, CountsWhatEachStimulusIsTakenFor) {
   TrialsData data = people({"P01", "P02"});
   add(data, 0, "sphere", "sphere", 4);

@@ -5,7 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/psychophysics/study/trials_result.h"
+#include "analysis/psychophysics/report/trials_words.h"
+#include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/random.h"
 #include "tests/analysis/psychophysics/study/null_trials.h"
 
@@ -73,6 +74,25 @@ TEST(PairedQuantitiesTest, TestsKeepTheirLevel) {
   for (const test::NullLevel& level : levels) {
     EXPECT_LE(level.found, band.high) << level.test;
   }
+}
+
+TEST(PairedQuantitiesTest, TrialsWithoutAnOutcomeAreCountedWithTheReason) {
+  TrialsData data = indifferent(1);  // 180 trials
+  for (std::size_t i = 0; i < 20; ++i) {
+    data.trials[i].answers[0].correct = -1;
+  }
+  data.trials[30].answers.clear();
+  TrialsPlan plan = paired_plan();
+  const TrialsResult result = analyze(data, plan, {}, 1);
+  const std::vector<std::string> lines = summary_lines(result);
+  EXPECT_EQ(lines[1],
+            "20 of 180 trials are not analysed, because nothing says which answer counts 1; "
+            "[analysis] can name it (yes = \"ANSWER\")");
+  EXPECT_EQ(lines[2], "1 of 180 trials is not analysed, because they have no answer");
+  plan.yes = "first";
+  const auto unused = unused_trials(data, plan);
+  ASSERT_EQ(unused.size(), 1u);
+  EXPECT_EQ(unused[0].count, 1u);
 }
 
 TEST(PairedQuantitiesTest, TrialsWithoutAnAnswerOrWithOneItemTwiceDoNotCount) {
