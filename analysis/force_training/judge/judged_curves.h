@@ -25,7 +25,8 @@ struct JudgedRecall {
 
 /// Place of a curve on the sheets.
 struct SheetCurve {
-  int sheet{1}, curve{1};  // from 1; curves are numbered over all sheets
+  std::string sheet;  // its name, which no other preparation has
+  int curve{1};       // from 1, over all sheets
   std::string session;
   std::string subject;
   int trial{0};
@@ -58,8 +59,8 @@ std::string judging_table(const std::vector<JudgedRecall>& recalls, const SheetO
 /// @throws InputError for what judging_key() does not write
 std::vector<SheetCurve> read_judging_key(const std::filesystem::path& file);
 /// Judgements of one judge in the order of the key.
-/// @throws InputError for a curve that is unknown, missing or there twice, and for a judgement
-/// that is no whole number from 1 to 7
+/// @throws InputError for sheets that the key is not of, for a curve that is unknown, missing or
+/// there twice, and for a judgement that is no whole number from 1 to 7
 std::vector<double> read_judgements(const std::filesystem::path& file,
                                     const std::vector<SheetCurve>& key);
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/document/palette.h"
 #include "analysis/files/csv.h"
+#include "analysis/files/sha256.h"
 #include "analysis/force_training/judge/judged_curves.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -22,8 +24,15 @@ constexpr const char* kHow =
     "at all) to 7 (perfectly), and write it beside the curve's number into your own copy of "
     "judgements.csv. Save that copy under your name. Some curves come twice.";
 
-int sheet_of(std::size_t place, const SheetOptions& options) {
+int number_of_sheet(std::size_t place, const SheetOptions& options) {
   return static_cast<int>(place) / options.each + 1;
+}
+
+/// What the key says of a curve, without its sheet.
+std::string key_row(std::size_t place, const JudgedRecall& recall, int repeats) {
+  const RecallScore& score = recall.detail.score;
+  return fmt::format("{},{},{},{},{},{},{},{}\n", place + 1, recall.session, recall.subject,
+                     recall.trial, repeats, score.alignment_cost, score.rms_force, score.rms_slope);
 }
 
 /// Every fifth sample draws a curve as well as all of them.
@@ -67,6 +76,30 @@ std::vector<int> repeats_of(const std::vector<JudgedRecall>& recalls) {
   return repeats;
 }
 
+/// The rows of the key, without their sheets.
+std::vector<std::string> key_rows(const std::vector<JudgedRecall>& recalls) {
+  const std::vector<int> repeats = repeats_of(recalls);
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < recalls.size(); ++i) {
+    rows.push_back(key_row(i, recalls[i], repeats[i]));
+  }
+  return rows;
+}
+
+/// Names of sheets, one for each curve: a mark of the key and a number, as "s3fa9c1-2". A table of
+/// judgements thereby tells which key it belongs to.
+std::vector<std::string> sheets_of(const std::vector<JudgedRecall>& recalls,
+                                   const SheetOptions& options) {
+  constexpr std::size_t kMark = 8;
+  const std::string mark =
+      sha256_of(fmt::format("{}", fmt::join(key_rows(recalls), ""))).substr(0, kMark);
+  std::vector<std::string> sheets;
+  for (std::size_t i = 0; i < recalls.size(); ++i) {
+    sheets.push_back(fmt::format("s{}-{}", mark, number_of_sheet(i, options)));
+  }
+  return sheets;
+}
+
 }  // namespace
 
 std::vector<std::size_t> shuffled_recalls(std::size_t recalls, const SheetOptions& options) {
@@ -96,14 +129,15 @@ std::vector<std::string> judging_sheets(const std::vector<JudgedRecall>& recalls
     figures.push_back(figure_of(recalls[i], i, simulated));
   }
   const std::vector<Drawing> drawings = drawn(figures);
+  const std::vector<std::string> names = sheets_of(recalls, options);
   std::vector<std::string> sheets;
   for (std::size_t i = 0; i < drawings.size();) {
     Document page;
-    const int sheet = sheet_of(i, options);
-    page.title = fmt::format("Sheet {}", sheet);
+    const std::string& sheet = names[i];
+    page.title = "Sheet " + sheet;
     page.simulated = simulated;
     page.paragraph(kHow);
-    for (; i < drawings.size() && sheet_of(i, options) == sheet; ++i) {
+    for (; i < drawings.size() && names[i] == sheet; ++i) {
       page.picture(drawings[i]);
     }
     sheets.push_back(to_html(page));
@@ -114,20 +148,18 @@ std::vector<std::string> judging_sheets(const std::vector<JudgedRecall>& recalls
 std::string judging_key(const std::vector<JudgedRecall>& recalls, const SheetOptions& options) {
   std::string text =
       "sheet,curve,session,participant,trial,repeats,alignment_cost,rms_force,rms_slope\n";
-  const std::vector<int> repeats = repeats_of(recalls);
-  for (std::size_t i = 0; i < recalls.size(); ++i) {
-    const RecallScore& score = recalls[i].detail.score;
-    text += fmt::format("{},{},{},{},{},{},{},{},{}\n", sheet_of(i, options), i + 1,
-                        recalls[i].session, recalls[i].subject, recalls[i].trial, repeats[i],
-                        score.alignment_cost, score.rms_force, score.rms_slope);
+  const std::vector<std::string> sheets = sheets_of(recalls, options), rows = key_rows(recalls);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    text += sheets[i] + "," + rows[i];
   }
   return text;
 }
 
 std::string judging_table(const std::vector<JudgedRecall>& recalls, const SheetOptions& options) {
   std::string text = "sheet,curve,judgement\n";
+  const std::vector<std::string> sheets = sheets_of(recalls, options);
   for (std::size_t i = 0; i < recalls.size(); ++i) {
-    text += fmt::format("{},{},\n", sheet_of(i, options), i + 1);
+    text += fmt::format("{},{},\n", sheets[i], i + 1);
   }
   return text;
 }
@@ -135,9 +167,9 @@ std::string judging_table(const std::vector<JudgedRecall>& recalls, const SheetO
 std::vector<SheetCurve> read_judging_key(const std::filesystem::path& file) {
   const CsvTable table = CsvTable::load(file);
   const auto numbers = [&](const char* name) { return table.numbers(table.column(name)); };
-  const auto sheet = numbers("sheet"), curve = numbers("curve"), trial = numbers("trial"),
-             repeats = numbers("repeats"), cost = numbers("alignment_cost"),
-             force = numbers("rms_force"), slope = numbers("rms_slope");
+  const auto curve = numbers("curve"), trial = numbers("trial"), repeats = numbers("repeats"),
+             cost = numbers("alignment_cost"), force = numbers("rms_force"),
+             slope = numbers("rms_slope");
   std::vector<SheetCurve> key;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto word = [&](const char* name) {
@@ -146,7 +178,7 @@ std::vector<SheetCurve> read_judging_key(const std::filesystem::path& file) {
     const auto whole = [&](const std::vector<double>& column) {
       return static_cast<int>(column[row]);
     };
-    key.push_back({whole(sheet), whole(curve), word("session"), word("participant"), whole(trial),
+    key.push_back({word("sheet"), whole(curve), word("session"), word("participant"), whole(trial),
                    whole(repeats), cost[row], force[row], slope[row]});
     if (key.back().first < 0 || key.back().first > static_cast<int>(row)) {
       table.refuse(row, table.column("repeats"), "0, or the number of a curve before it");
@@ -158,13 +190,17 @@ std::vector<SheetCurve> read_judging_key(const std::filesystem::path& file) {
 std::vector<double> read_judgements(const std::filesystem::path& file,
                                     const std::vector<SheetCurve>& key) {
   const CsvTable table = CsvTable::load(file);
-  const std::size_t curves = table.column("curve"), judgements = table.column("judgement");
+  const std::size_t sheets = table.column("sheet"), curves = table.column("curve"),
+                    judgements = table.column("judgement");
   const std::vector<double> curve = table.numbers(curves), judged = table.numbers(judgements);
   std::map<int, double> known;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const bool listed =
-        std::ranges::any_of(key, [&](const SheetCurve& each) { return each.curve == curve[row]; });
-    if (!listed || !known.emplace(static_cast<int>(curve[row]), judged[row]).second) {
+    const auto listed =
+        std::ranges::find_if(key, [&](const SheetCurve& each) { return each.curve == curve[row]; });
+    if (listed != key.end() && table.text(row, sheets) != listed->sheet) {
+      table.refuse(row, sheets, listed->sheet + ", as on the sheets of this study's key");
+    }
+    if (listed == key.end() || !known.emplace(static_cast<int>(curve[row]), judged[row]).second) {
       table.refuse(row, curves, "each number of a curve once");
     }
     const bool whole = judged[row] == std::round(judged[row]);

@@ -108,7 +108,22 @@ TEST_F(JudgingTest, SheetsAndTableNameNobody) {
       EXPECT_THAT(sheet, Not(HasSubstr(fmt::format(">P{}", person))));
     }
   }
-  EXPECT_THAT(judging_table(recalls_, options_), HasSubstr("sheet,curve,judgement\n1,1,\n"));
+  EXPECT_THAT(judging_table(recalls_, options_),
+              HasSubstr("sheet,curve,judgement\n" + key_[0].sheet + ",1,\n"));
+  EXPECT_THAT(sheets[2], HasSubstr("Sheet " + key_.back().sheet));
+}
+
+TEST_F(JudgingTest, JudgementsOfOtherSheetsAreRefused) {
+  const auto four = [](const SheetCurve&) { return 4; };
+  EXPECT_EQ(refused(filled(four)), "");
+  const std::string own = key_[0].sheet;
+  std::vector<JudgedRecall> others = recalls_;
+  others.back().detail.score.rms_force += 1e-9;  // another study of the same design
+  key_ = read_judging_key(file("other.csv", judging_key(others, options_)));
+  const std::string text = filled(four);
+  key_ = read_judging_key(file("key.csv", judging_key(recalls_, options_)));
+  EXPECT_THAT(refused(text), HasSubstr("judge.csv:2: sheet is 's"));
+  EXPECT_THAT(refused(text), HasSubstr("allowed: " + own + ", as on the sheets of this study"));
 }
 
 TEST_F(JudgingTest, TheKeyHoldsTheParts) {
