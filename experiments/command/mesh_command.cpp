@@ -14,7 +14,6 @@
 #include "core/render/gl/image.h"
 #include "experiments/command/arguments.h"
 #include "experiments/control/interrupt.h"
-#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -67,7 +66,7 @@ void MemoryBudget::check(const std::string& what, double bytes) const {
   }
 }
 
-ShownWork::ShownWork(const std::string& what) : progress_(what, 1.0) { watch_for_interrupt(); }
+ShownWork::ShownWork(const std::string& what) : progress_(what, 1.0) {}
 
 geometry::WorkReport ShownWork::report() {
   return [this](double share) {

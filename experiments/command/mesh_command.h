@@ -8,6 +8,7 @@
 #include "core/geometry/volume/voxelize.h"
 #include "core/render/mesh/scene.h"
 #include "experiments/control/progress.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 
@@ -35,13 +36,15 @@ class MemoryBudget {
 inline constexpr const char* kMemoryHelp =
     "Limit of memory [GB]; a larger input is refused (default: the free memory)";
 
-/// A report that shows a line of progress and lets SIGINT and SIGTERM cancel the work.
+/// A report that shows a line of progress and lets SIGINT and SIGTERM cancel the work, while it is
+/// in scope.
 class ShownWork {
  public:
   explicit ShownWork(const std::string& what);
   geometry::WorkReport report();
 
  private:
+  InterruptWatch watch_;
   Progress progress_;
 };
 

@@ -67,6 +67,19 @@ void watch_for_interrupt() {
   }
 }
 
+InterruptWatch::InterruptWatch() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i], nullptr, &before_[i]);
+  }
+  watch_for_interrupt();
+}
+
+InterruptWatch::~InterruptWatch() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    ::sigaction(kSignals[i], &before_[i], nullptr);
+  }
+}
+
 void watch_fatal_signals() {
   for (const int each :
        {SIGQUIT, SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGSYS, SIGTRAP, SIGXCPU, SIGUSR1,

@@ -107,6 +107,17 @@ TEST_F(EvaluateCommandTest, WritesReportAndNumbers) {
   EXPECT_TRUE(json["identified"]["stiffness_N_per_m"]["high_95"].is_null()) << "a rigid body";
 }
 
+TEST_F(EvaluateCommandTest, TimesThatMayBeMillisecondsAreSaid) {
+  const std::string line = "haptrial evaluate rubbed --mesh absent.obj --registered";
+  EXPECT_THAT(run(line).errors, Not(HasSubstr("WARNING")));
+  const auto slow = run("sed -i s/time_ms/time_s/ rubbed/poses.csv; " + line);
+  EXPECT_THAT(
+      slow.errors,
+      HasSubstr("WARNING: implausible times of poses (9990 s with 0.1000 rows a second). Times "
+                "are read as seconds and rates as hertz; are these milliseconds?"));
+  EXPECT_THAT(slow.errors, Not(HasSubstr("times of forces")));
+}
+
 /// Another program reads the in-trajectory, and its forces are judged as ours are: here it presses
 /// back by k times the depth, which is the recorded force without friction.
 TEST_F(EvaluateCommandTest, ForcesOfAnotherProgramAreJudged) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "analysis/document/recorded_times.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/alike_names.h"
 
@@ -17,10 +18,6 @@ namespace {
 using analysis::number;
 
 // Bounds that a recording of a hand's force hardly leaves.
-constexpr double kLongest = 600.0;    // [s]
-constexpr double kShortest = 0.1;     // [s]
-constexpr double kSlowest = 10.0;     // [Hz]
-constexpr double kFastest = 100e3;    // [Hz]
 constexpr double kStrongest = 100.0;  // [N]
 constexpr double kFaintest = 0.01;    // [N]
 constexpr std::size_t kFewestRows = 10;
@@ -76,22 +73,15 @@ bool is_nearer_reversed(const std::vector<double>& target, const std::vector<dou
 
 bool is_constant(const CurveLook& look) { return look.high - look.low <= 1e-9 * look.peak(); }
 
-bool has_odd_times(const CurveLook& look) {
-  return look.duration > kLongest || look.duration < kShortest || look.rate < kSlowest ||
-         look.rate > kFastest;
-}
+analysis::RecordedTimes recorded(const CurveLook& look) { return {look.duration, look.rate}; }
+
+bool has_odd_times(const CurveLook& look) { return recorded(look).implausible(); }
 
 bool has_gap(const CurveLook& look) {
   return look.gap > kShortestGap && look.gap * look.rate > kGapSteps;
 }
 
-constexpr const char* kImplausibleTimes = "implausible times";
-constexpr const char* kAreTheyMilliseconds =
-    "Times are read as seconds and rates as hertz; are these milliseconds?";
-
-std::string times_of(const CurveLook& look) {
-  return fmt::format("{} s with {} rows a second", number(look.duration), number(look.rate));
-}
+std::string times_of(const CurveLook& look) { return recorded(look).words(); }
 
 /// The looks of a study and how to speak of them.
 class Warnings {
@@ -137,10 +127,10 @@ std::string both(double target, double applied, const char* unit) {
 
 void warn_of_times(Warnings& warnings) {
   warnings.add(
-      kImplausibleTimes,
+      analysis::kImplausibleTimes,
       [](const TrialLook& t) { return has_odd_times(t.target) || has_odd_times(t.applied); },
       [](const TrialLook& t) { return times_of(has_odd_times(t.applied) ? t.applied : t.target); },
-      kAreTheyMilliseconds);
+      analysis::kAreTheyMilliseconds);
   warnings.add(
       "gaps between two rows",
       [](const TrialLook& t) { return has_gap(t.target) || has_gap(t.applied); },
@@ -274,8 +264,8 @@ std::string time_warning(const analysis::TableCurve& target, const analysis::Tab
   if (!has_odd_times(first) && !has_odd_times(second)) {
     return "";
   }
-  return fmt::format("WARNING: {} (target: {}; applied: {}). {}", kImplausibleTimes,
-                     times_of(first), times_of(second), kAreTheyMilliseconds);
+  return fmt::format("WARNING: {} (target: {}; applied: {}). {}", analysis::kImplausibleTimes,
+                     times_of(first), times_of(second), analysis::kAreTheyMilliseconds);
 }
 
 std::vector<std::string> import_warnings(const ImportedTrials& trials,

@@ -14,6 +14,7 @@
 #include "analysis/contact/evaluation/write_evaluation.h"
 #include "analysis/contact/recording/read_recording.h"
 #include "analysis/contact/recording/session_contact.h"
+#include "analysis/document/recorded_times.h"
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
@@ -186,6 +187,16 @@ evaluation::ContactRecording read_tables(const std::vector<std::string>& given) 
   return evaluation::read_recording(tables.front(), tables.back());
 }
 
+template <class Stream>
+void warn_of_times(const char* what, const Stream& stream) {
+  const double duration = stream.time.back() - stream.time.front();
+  const analysis::RecordedTimes times{duration, static_cast<double>(stream.size() - 1) / duration};
+  if (times.implausible()) {
+    fmt::print(stderr, "WARNING: {} of {} ({}). {}\n", analysis::kImplausibleTimes, what,
+               times.words(), analysis::kAreTheyMilliseconds);
+  }
+}
+
 /// A recording and what it is called.
 struct GivenRecording {
   evaluation::ContactRecording recording;
@@ -201,7 +212,10 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& 
     if (o.object || o.trial) {
       throw InputError("--object and --trial are for a session file (.h5)");
     }
-    return {read_tables(o.recording), names};
+    evaluation::ContactRecording recording = read_tables(o.recording);
+    warn_of_times("poses", recording.pose);
+    warn_of_times("forces", recording.force);
+    return {std::move(recording), names};
   }
   evaluation::SessionContact contact =
       evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});

@@ -140,8 +140,9 @@ TEST_F(JudgingTest, RefusesWhatIsNoCompleteTable) {
   EXPECT_EQ(refused(filled(four)), "");
   EXPECT_THAT(refused(filled([](const SheetCurve& each) { return each.curve == 3 ? 8 : 4; })),
               HasSubstr("judgement is '8'; allowed: whole numbers from 1 to 7"));
-  EXPECT_THAT(refused("sheet,curve,judgement\n1,1,4\n"), HasSubstr("curve 2 is missing"));
-  EXPECT_THAT(refused(filled(four) + "1,1,4\n"), HasSubstr("each number of a curve once"));
+  const std::string again = key_[0].sheet + ",1,4\n";
+  EXPECT_THAT(refused("sheet,curve,judgement\n" + again), HasSubstr("curve 2 is missing"));
+  EXPECT_THAT(refused(filled(four) + again), HasSubstr("each number of a curve once"));
 }
 
 TEST_F(JudgingTest, AgreementIsThatOfTheTables) {
