@@ -9,11 +9,24 @@
 namespace haptrial {
 namespace {
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Whether a zero may be left out: it begins a whole number with further digits. Behind a decimal
+/// mark it counts.
+bool leads(const std::string& name, std::size_t i, const std::string& before) {
+  const bool begins =
+      before.empty() || !(is_digit(before.back()) || before.back() == '.' || before.back() == ',');
+  return name[i] == '0' && begins && i + 1 < name.size() && is_digit(name[i + 1]);
+}
+
 /// The name without what is easily typed by mistake.
 std::string plain(const std::string& name) {
   std::string result;
   for (std::size_t i = 0; i < name.size(); ++i) {
     const auto c = static_cast<unsigned char>(name[i]);
+    if (leads(name, i, result)) {
+      continue;
+    }
     if (name.compare(i, 2, "\u00a0") == 0) {
       ++i;  // a blank that does not break, of two bytes
     } else if (c > ' ' && c != '-' && c != '_') {
@@ -41,9 +54,21 @@ std::vector<std::vector<std::string>> alike_names(const std::vector<std::string>
 
 std::string alike_names_warning(const std::string& what, const std::vector<std::string>& shown) {
   return fmt::format(
-      "WARNING: the names of {} differ only in blanks, hyphens or capitals and are taken for "
-      "different {}: {}.",
+      "WARNING: the names of {} differ only in blanks, hyphens, capitals or leading zeros and are "
+      "taken for different {}: {}.",
       what, what, fmt::join(shown, ", "));
+}
+
+std::vector<std::string> alike_names_warnings(const std::string& what,
+                                              const std::vector<std::string>& names) {
+  std::vector<std::string> warnings;
+  for (std::vector<std::string>& group : alike_names(names)) {
+    for (std::string& name : group) {
+      name = fmt::format("\"{}\"", name);
+    }
+    warnings.push_back(alike_names_warning(what, group));
+  }
+  return warnings;
 }
 
 }  // namespace haptrial

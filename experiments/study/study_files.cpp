@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/alike_names.h"
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/record/read/imported.h"
@@ -220,6 +221,15 @@ std::string remark_on_repeated(const std::vector<fs::path>& files) {
                                         fmt::join(repeated, "; "));
 }
 
+/// Warns of participants who may be one person with two names.
+std::vector<std::string> remarks_on_names(const std::vector<fs::path>& files) {
+  std::set<std::string> people;
+  for (const fs::path& file : files) {
+    people.insert(record::SessionReader(file).info().subject);
+  }
+  return alike_names_warnings("participants", {people.begin(), people.end()});
+}
+
 std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
   if (pilots == Pilots::kAlone) {
     return "These are pilot sessions, not the study.";
@@ -308,6 +318,7 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   StudyFiles study;
   study.files = taken(sorted, folder, pilots);
   study.first = record::SessionReader(study.files.front()).info();
+  study.remarks = remarks_on_names(study.files);
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
     study.remarks.push_back(remark);
   }

@@ -138,8 +138,13 @@ TEST_F(StatisticsCommandTest, WarnsOfLevelsThatDifferOnlyInCapitals) {
   const CommandResult run =
       run_command("haptrial statistics " + table + " --seed 18446744073709551615");
   EXPECT_THAT(run.errors, HasSubstr("WARNING: the names of levels of condition differ only in "
-                                    "blanks, hyphens or capitals and are taken for different "
-                                    "levels of condition: \"Visual\", \"visual\"."));
+                                    "blanks, hyphens, capitals or leading zeros and are taken for "
+                                    "different levels of condition: \"Visual\", \"visual\"."));
+  const std::string people = file("people.csv",
+                                  "subject,condition,score\nA,x,1\nA,y,2\nb1,x,3\nB01,y,4\n"
+                                  "C,x,2\nC,y,5\nD,x,1\nD,y,3\n");
+  EXPECT_THAT(run_command("haptrial statistics " + people).errors,
+              HasSubstr("taken for different participants: \"B01\", \"b1\"."));
   EXPECT_THAT(run_command("haptrial statistics " + table + " --seed -1").errors,
               HasSubstr("--seed is '-1'; allowed: a whole number from 0 to 18446744073709551615"));
 }

@@ -14,6 +14,7 @@
 #include "analysis/files/csv.h"
 #include "analysis/files/sha256.h"
 #include "analysis/psychophysics/exchange/field_text.h"
+#include "core/base/alike_names.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/record/rows/trial_rows.h"
@@ -267,6 +268,15 @@ void settle_factors(ImportedStudy& study) {
   }
 }
 
+void warn_of_participants(ImportedStudy& study) {
+  std::set<std::string> people;
+  for (const ImportedTrial& trial : study.trials) {
+    people.insert(trial.participant);
+  }
+  const auto warnings = alike_names_warnings("participants", {people.begin(), people.end()});
+  study.warnings.insert(study.warnings.end(), warnings.begin(), warnings.end());
+}
+
 /// PsychoPy writes a file for each session, and people seldom change its number.
 void refuse_twins(const ImportedStudy& study) {
   std::map<std::pair<std::string, int>, std::size_t> owner;
@@ -310,6 +320,7 @@ ImportedStudy read_trial_tables(const std::vector<fs::path>& files, const TrialC
                                  files.front().string()));
   }
   settle_factors(study);
+  warn_of_participants(study);
   refuse_twins(study);
   return study;
 }

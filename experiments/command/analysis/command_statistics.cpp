@@ -92,15 +92,10 @@ void check_groups(const analysis::DesignTable& table) {
   }
 }
 
-/// A typo in a name makes a level of its own.
-void warn_of_alike_levels(const analysis::DesignTable& table) {
-  for (const analysis::Factor& factor : table.factors) {
-    for (std::vector<std::string>& group : alike_names(factor.levels)) {
-      for (std::string& name : group) {
-        name = fmt::format("\"{}\"", name);
-      }
-      fmt::print(stderr, "{}\n", alike_names_warning("levels of " + factor.name, group));
-    }
+/// A typo in a name makes a level or a participant of its own.
+void warn_of_alike_names(const std::string& what, const std::vector<std::string>& names) {
+  for (const std::string& warning : alike_names_warnings(what, names)) {
+    fmt::print(stderr, "{}\n", warning);
   }
 }
 
@@ -124,10 +119,13 @@ int statistics(const StatisticsOptions& options) {
   const analysis::DesignTable table = analysis::design_table(
       observed.observations, options.factors,
       plan.reference.empty() ? std::vector<std::string>{} : std::vector{plan.reference});
+  warn_of_alike_names("participants", table.subjects);
   check_between(table, options.between);
   check_groups(table);
   analysis::check_plan(table, plan);
-  warn_of_alike_levels(table);
+  for (const analysis::Factor& factor : table.factors) {
+    warn_of_alike_names("levels of " + factor.name, factor.levels);
+  }
   const analysis::DesignTests tests = analysis::design_tests(table, plan, resampling);
   if (observed.left_out > 0) {
     fmt::print("Left out: {} of {} rows, which have a missing field\n", observed.left_out,

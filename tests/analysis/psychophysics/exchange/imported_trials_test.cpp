@@ -170,6 +170,12 @@ TEST_F(ImportedTrialsTest, WordsKeepTheSpellingOfTheirFields) {
   EXPECT_THAT(study.warnings, IsEmpty());
 }
 
+TEST_F(ImportedTrialsTest, ParticipantsWithAlikeNamesAreSaid) {
+  const std::string text = "subject,correct\nP1,1\nP2,0\np1,1\nP01,1\n";
+  EXPECT_THAT(read(text, guessed(text)).warnings,
+              ElementsAre(HasSubstr("different participants: \"P01\", \"P1\", \"p1\"")));
+}
+
 TEST_F(ImportedTrialsTest, SpellingsOfOneNumberAreSaid) {
   const std::string text = "subject,correct,code\na,1,1\na,0,01\na,1,2\na,1,2\n";
   TrialColumns columns = guessed(text);
