@@ -114,8 +114,8 @@ TEST(TraineePagesTest, AScoreOfARatedStudyStandsOnTheNextTraineesPage) {
               HasSubstr("it was learned with another drilling.time_limit (3 s; here 4 s)"));
 
   fs::copy_file(out / "S01.h5", study / "S06.h5");  // does not belong to the study
-  for (const std::string command :
-       {learn + " --overwrite", "haptrial bone phases " + study.string() + " --number 2"}) {
+  const std::string divide = "haptrial bone phases " + study.string() + " --number 2";
+  for (const std::string& command : {learn + " --overwrite", divide}) {
     const auto mixed = run_command(command);
     EXPECT_EQ(mixed.status, 2) << command;
     EXPECT_THAT(mixed.errors, HasSubstr("was recorded with another definition than")) << command;
