@@ -206,8 +206,14 @@ TEST_P(ShippedTrials, GiveTheEstimatesOfTheNativeSessions) {
   const std::string sum = run_command("sha256sum " + path("theirs.csv") + " | cut -c-64").output;
   EXPECT_THAT(run.output, HasSubstr("theirs.csv, SHA-256 " + sum.substr(0, 64)));
   EXPECT_THAT(run.output, HasSubstr("recording   imported: no ticks were recorded"));
-  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("SIMULATED"));
-  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), Not(HasSubstr("force limit")));
+  const std::string report = test::read_text(folder_ / "study/report.md");
+  EXPECT_THAT(report, HasSubstr("SIMULATED"));
+  EXPECT_THAT(report, HasSubstr("Another program ran 3 sessions and wrote the tables"));
+  for (const char* unknown : {"force limit", "Forces were computed", "Recorded by haptrial",
+                              "told whether they were right", "planned breaks", "were planned.",
+                              "Combinations of factors"}) {
+    EXPECT_THAT(report, Not(HasSubstr(unknown))) << unknown;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -294,6 +300,23 @@ TEST_F(TrialsImportTest, AnAnalysisThatNothingJudgesIsRefused) {
   EXPECT_THAT(run_command(validate).output, HasSubstr("nothing says which answers are right"));
   test::write_text(folder_ / "pairs.toml", text + "yes = \"first\"\n");
   EXPECT_THAT(run_command(validate).output, Not(HasSubstr("nothing says")));
+}
+
+TEST_F(TrialsImportTest, PlannedTestsNeedConditions) {
+  test::write_text(folder_ / "t.csv",
+                   "subject,speed,response,rt_ms\nP1,slow,a,400\nP1,slow,a,410\nP2,slow,b,390\n");
+  const std::string table = "haptrial import " + path("t.csv") + " --kind times --out ";
+  const std::string planned = " --planned 'slow < fast'";
+  ASSERT_EQ(run_command(table + path("one")).status, 0);
+  const CommandResult none = run_command("haptrial analyze " + path("one") + planned);
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.errors,
+              HasSubstr("the planned test \"slow < fast\" compares conditions, but the "
+                        "study has one; state the factors in analysis.by"));
+  ASSERT_EQ(run_command(table + path("factor") + " --factor speed").status, 0);
+  const CommandResult half = run_command("haptrial analyze " + path("factor") + planned);
+  EXPECT_EQ(half.status, 0) << half.errors;
+  EXPECT_THAT(half.output, HasSubstr("The planned tests were not made, because"));
 }
 
 TEST_F(TrialsImportTest, AMistakeIsASentenceAndLeavesNothing) {

@@ -65,13 +65,22 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
 
 /// Names in planned tests are of the quantity with most conditions: force compensation has none
 /// where no channel came.
-void check_planned(const trials::TrialsResult& result) {
+void check_planned(const trials::TrialsResult& result, std::vector<std::string>& remarks) {
+  const std::vector<analysis::PlannedTest>& tests = result.plan.plan.tests;
   const auto most = std::max_element(result.quantities.begin(), result.quantities.end(),
                                      [](const trials::Quantity& a, const trials::Quantity& b) {
                                        return a.table.cells.size() < b.table.cells.size();
                                      });
   if (most != result.quantities.end() && most->compared) {
     analysis::check_plan(most->table, result.plan.plan);
+  } else if (!tests.empty() && result.plan.by.empty()) {
+    throw InputError(fmt::format(
+        "the planned test \"{}\" compares conditions, but the study has one; state the factors in "
+        "analysis.by",
+        analysis::text_of(tests.front())));
+  } else if (!tests.empty()) {
+    remarks.emplace_back(
+        "The planned tests were not made, because the sessions do not have two conditions.");
   }
 }
 
@@ -261,7 +270,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   trials::TrialsResult result =
       trials::analyze(std::move(data), plan, procedures_of(definition), request.threads);
   add_file_quantities(definition, request.files.files, request.threads, result);
-  check_planned(result);
+  check_planned(result, remarks);
   trials::keep_equivalence(result.quantities, plan.plan.beside);
   add_sequential(request, definition, result);
   result.page_scores = std::move(scores);
