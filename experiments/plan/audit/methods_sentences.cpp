@@ -168,6 +168,27 @@ void add_led(const std::vector<MethodsSession>& sessions, const protocols::Defin
 
 }  // namespace
 
+bool all_imported(const std::vector<MethodsSession>& sessions) {
+  return std::ranges::all_of(sessions, [](const MethodsSession& session) {
+    return !session.analysed || !session.imported.empty();
+  });
+}
+
+void add_imported(const std::vector<MethodsSession>& sessions, Document& document) {
+  const auto imported = std::ranges::count_if(
+      sessions, [](const MethodsSession& session) { return !session.imported.empty(); });
+  if (imported == 0) {
+    return;
+  }
+  document.heading("Imported sessions");
+  document.paragraph(fmt::format(
+      "Another program ran {} and wrote the {}. Its devices, forces, clock and screen, how many "
+      "participants and trials were planned, in what order stimuli came, and what participants "
+      "were told are not known here.",
+      counted(imported, "session", "sessions"),
+      imported == 1 ? "table that it was imported from" : "tables that they were imported from"));
+}
+
 void add_participants(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
                       Document& document) {
   const auto people = people_of(sessions);
@@ -176,11 +197,12 @@ void add_participants(const std::vector<MethodsSession>& sessions, const protoco
       people, [](const auto& each) { return each.second->facts.info.simulated; });
   document.heading("Participants");
   std::string words = fmt::format(
-      "{}{} in {}; {} planned.", counted(people.size(), "participant is", "participants are"),
+      "{}{} in {}{}.", counted(people.size(), "participant is", "participants are"),
       simulated ? " simulated (programs in the place of people) and analysed" : " analysed",
       counted(analysed, "session", "sessions"),
-      d.design.participants == 1 ? std::string("1 was")
-                                 : fmt::format("{} were", d.design.participants));
+      all_imported(sessions)
+          ? std::string()
+          : fmt::format("; {} planned", counted(d.design.participants, "was", "were")));
   if (d.groups.size() > 1) {
     words += fmt::format(" Groups: {}.", over_people(people, [&](const auto& info) {
                            return protocols::group_of(d.groups, info.subject);
@@ -237,8 +259,28 @@ void add_apparatus(const std::vector<MethodsSession>& sessions, const protocols:
       })));
 }
 
+/// Trials of imported sessions: counts alone.
+static void add_counts(const std::vector<MethodsSession>& sessions, Document& document) {
+  Counts trials;
+  for (const MethodsSession& session : sessions) {
+    for (const record::PassRow& pass : session.passes) {
+      ++trials[fmt::format("{}", pass.condition)];
+    }
+  }
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [condition, count] : trials) {
+    rows.push_back({condition, fmt::format("{}", count)});
+  }
+  document.heading("Trials as imported");
+  document.table({"condition", "trials"}, rows);
+}
+
 void add_done(const std::vector<MethodsSession>& sessions, const protocols::Definition& d,
               Document& document) {
+  if (all_imported(sessions)) {
+    add_counts(sessions, document);
+    return;
+  }
   std::map<std::string, std::array<int, 2>> passes;  // completed, aborted
   std::vector<std::vector<std::string>> rows;
   for (const MethodsSession& session : sessions) {

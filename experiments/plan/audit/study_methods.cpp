@@ -4,6 +4,7 @@
 #include <set>
 
 #include "analysis/exchange/own_findings.h"
+#include "core/record/read/imported.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/experiment.h"
 
@@ -17,6 +18,7 @@ void read_rest(MethodsSession& session) {
   const record::SessionReader reader(session.facts.file);
   session.passes = reader.passes();
   session.seen = !reader.frames().empty();
+  session.imported = record::imported_from(reader);
   for (const record::EventRow& event : reader.events()) {
     if (event.kind == "tutor" && !event.text.ends_with("teaches")) {
       session.tutor = event.text.substr(0, event.text.find(" from "));
@@ -67,8 +69,11 @@ analysis::FindingList study_methods(const std::vector<fs::path>& analysed) {
   const Experiment experiment = parse_experiment(info.definition, info.definition_name);
   analysis::Document document;
   add_participants(sessions, *experiment.definition, document);
-  add_apparatus(sessions, *experiment.definition, document);
-  experiment.study->add_methods(*experiment.definition, info.seed, document);
+  add_imported(sessions, document);
+  if (!all_imported(sessions)) {
+    add_apparatus(sessions, *experiment.definition, document);
+    experiment.study->add_methods(*experiment.definition, info.seed, document);
+  }
   add_done(sessions, *experiment.definition, document);
   lower_headings(document);
   list.blocks = std::move(document.blocks);
