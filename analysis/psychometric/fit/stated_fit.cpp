@@ -91,8 +91,7 @@ StatedFit stated_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions
   if (adaptive) {
     take_posterior(blocks, options, stated);
   } else {
-    constexpr double kUnusual = 0.2;  // at 0.05 too many intervals of scattered answers stay short
-    take_profile(blocks, options, deviance_p < kUnusual, stated);
+    take_profile(blocks, options, deviance_p < kUnusualScatter, stated);
   }
   const FittedParameters& likeliest = stated.likeliest.parameters;
   stated.lapse_at_bound = at_bound(options.lapse, likeliest.lapse);

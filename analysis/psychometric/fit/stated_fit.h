@@ -9,6 +9,10 @@
 
 namespace haptrial::analysis {
 
+/// Intervals of listed levels are widened if answers scatter as much in fewer than this share of
+/// samples; at 0.05 too many intervals of scattered answers stay short.
+inline constexpr double kUnusualScatter = 0.2;
+
 /// The estimates and intervals that a report states of a function, from one method, and what is
 /// wrong with them.
 struct StatedFit {
@@ -36,8 +40,8 @@ struct StatedFit {
 /// threshold is open if the prior ends it: if the density there is above exp(-1.92) of the largest,
 /// which a likelihood-ratio test would not reject. There is no interval if more lapses or
 /// guesses than are allowed make the answers likelier by a factor sqrt(e). If answers to listed
-/// levels scatter more than chance does in four of five cases (deviance_p < 0.2), the profile's cut
-/// is that of an F test with the deviance over its degrees of freedom as the scale
+/// levels scatter more than chance does in four of five cases (deviance_p < kUnusualScatter), the
+/// profile's cut is that of an F test with the deviance over its degrees of freedom as the scale
 /// (quasi-likelihood).
 /// @param adaptive    the levels depended on the answers
 /// @param deviance_p  of bootstrap_fit(); NaN: not known

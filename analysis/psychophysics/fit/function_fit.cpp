@@ -121,19 +121,13 @@ void take_draws(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
   }
 }
 
-/// Makes a bootstrap's interval longer where answers scatter beyond chance.
-void widen(Estimated& e, double factor) {
-  e.low = e.value - factor * (e.value - e.low);
-  e.high = e.value + factor * (e.high - e.value);
+Estimated on_axis(const Estimated& level, const psychometric::Axis& axis) {
+  const auto at = [&](double value) {
+    const double x = std::isfinite(value) ? axis.at(value) : kNotKnown;
+    return std::isfinite(x) ? x : kNotKnown;
+  };
+  return {at(level.value), at(level.low), at(level.high)};
 }
-
-void widen_rate(Estimated& e, double factor) {
-  widen(e, factor);
-  e.low = std::isnan(e.low) ? e.low : std::max(e.low, 0.0);
-  e.high = std::isnan(e.high) ? e.high : std::min(e.high, kLargestRate);
-}
-
-void remove_interval(Estimated& e) { e.low = e.high = kNotKnown; }
 
 /// Intervals that would not hold the truth as often as they say.
 void remove_intervals(FunctionFit& result, FunctionReadings& r) {
@@ -143,14 +137,6 @@ void remove_intervals(FunctionFit& result, FunctionReadings& r) {
   for (BandPoint& point : result.band) {
     remove_interval(point.level);
   }
-}
-
-Estimated on_axis(const Estimated& level, const psychometric::Axis& axis) {
-  const auto at = [&](double value) {
-    const double x = std::isfinite(value) ? axis.at(value) : kNotKnown;
-    return std::isfinite(x) ? x : kNotKnown;
-  };
-  return {at(level.value), at(level.low), at(level.high)};
 }
 
 FunctionReadings readings_of(const BootstrappedFit& fit, const TrialsPlan& plan) {
@@ -184,13 +170,15 @@ BootstrappedFit bare_fit(const std::vector<TrialBlock>& blocks, const Likelihood
 
 /// The intervals of listed levels that are no profile's.
 void take_scatter(FunctionFit& result, FunctionReadings& r, const StatedFit& fit,
-                  const TrialsPlan& plan) {
-  widen(r.slope, fit.widening);
-  widen(r.weber, fit.widening);
-  widen_rate(r.lapse, fit.widening);
-  widen_rate(r.guess, fit.widening);
+                  const TrialsPlan& plan, const LikelihoodOptions& options) {
+  widen_log(r.slope, fit.widening);
+  widen_log(r.weber, fit.widening);
+  widen_rate(r.lapse, fit.widening, options.lapse);
+  widen_rate(r.guess, fit.widening, options.guess);
   for (BandPoint& point : result.band) {
-    widen(point.level, fit.widening);
+    Estimated x = on_axis(point.level, plan.function.axis);
+    widen(x, fit.widening);
+    point.level = as_levels(x, plan.function.axis);
   }
   if (const Estimated weber = converted_weber(r, plan); weber.known()) {
     r.weber = weber;
@@ -273,7 +261,7 @@ void fit_stated(FunctionFit& result, const LikelihoodOptions& options, const Tri
   if (result.adaptive) {
     take_draws(result, readings, stated, plan);
   } else {
-    take_scatter(result, readings, stated, plan);
+    take_scatter(result, readings, stated, plan, options);
   }
   if (!stated.no_interval.empty()) {
     remove_intervals(result, readings);

@@ -7,17 +7,10 @@
 
 #include "analysis/psychometric/fit/bayesian_fit.h"
 #include "analysis/psychometric/fit/bootstrap_fit.h"
+#include "analysis/psychophysics/fit/estimated.h"
 #include "analysis/psychophysics/fit/series.h"
 
 namespace haptrial::analysis::trials {
-
-/// A number with its interval, if it has one.
-struct Estimated {
-  double value{kNotKnown};
-  double low{kNotKnown}, high{kNotKnown};  // 95 %; NaN: not defined; infinite: no end
-
-  bool known() const { return value == value; }
-};
 
 /// The readings of a function, by either way of fitting. Each estimate lies within its interval.
 struct FunctionReadings {

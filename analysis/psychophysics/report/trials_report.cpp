@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/psychophysics/report/report_times.h"
 #include "analysis/psychophysics/report/trials_figures.h"
 #include "analysis/psychophysics/report/trials_findings.h"
@@ -119,9 +120,13 @@ std::string interval_words(const TrialsResult& result) {
         "width and Weber fraction at listed levels are those of the "
         "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
         "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
-        "2001). If answers scatter more than chance explains (p below 0.05), the intervals are as "
-        "much longer as a quasi-likelihood makes them.",
-        words.empty() ? "" : " ", result.plan.resamples);
+        "2001). If answers scatter more than chance explains (p below {} of the deviance), the "
+        "intervals are as much longer as a quasi-likelihood makes them, those of slope and Weber "
+        "fraction on the logarithm, those of rates up to the bounds of the fit. A likeliest rate "
+        "of "
+        "0 has no interval, as samples that are drawn without lapses do not tell how many there "
+        "may be.",
+        words.empty() ? "" : " ", result.plan.resamples, kUnusualScatter);
   }
   return words;
 }

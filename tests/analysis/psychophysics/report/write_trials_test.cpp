@@ -1,6 +1,7 @@
 // The whole way: sessions in a folder, read, analysed, written.
 #include "analysis/psychophysics/report/write_trials.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +13,10 @@
 #include <string>
 
 #include "analysis/files/csv.h"
+#include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/study/trials_study.h"
 #include "core/base/file_text.h"
@@ -125,6 +128,16 @@ TEST_P(WriteTrials, TracksOfAllParticipantsStandBesideEachOther) {
     EXPECT_EQ(drawn, presented);
     EXPECT_THAT(file_text(place() / "report.md"), HasSubstr(panel.name + ".svg"));
   }
+}
+
+TEST(TrialsTextTest, MethodsStateTheRuleByWhichIntervalsAreWidened) {
+  TrialsResult result;
+  result.plan.functions = true;
+  result.fits.resize(1);  // of listed levels
+  result.series.resize(1);
+  EXPECT_THAT(to_markdown(trials_report(result, {})),
+              HasSubstr(fmt::format("(p below {} of the deviance)", kUnusualScatter)));
+  EXPECT_EQ(kUnusualScatter, 0.2);
 }
 
 TEST(TrialsTextTest, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
