@@ -313,8 +313,15 @@ TEST_F(TrialsImportTest, PlannedTestsNeedConditions) {
   EXPECT_THAT(none.errors,
               HasSubstr("the planned test \"slow < fast\" compares conditions, but the "
                         "study has one; state the factors in analysis.by"));
-  ASSERT_EQ(run_command(table + path("factor") + " --factor speed").status, 0);
-  const CommandResult half = run_command("haptrial analyze " + path("factor") + planned);
+  test::write_text(folder_ / "both.csv",
+                   "subject,speed,response,rt_ms\nP1,slow,a,400\nP1,fast,b,410\n");
+  ASSERT_EQ(run_command("haptrial import " + path("both.csv") +
+                        " --kind times --factor speed --out " + path("both"))
+                .status,
+            0);
+  const CommandResult half =
+      run_command("haptrial import " + path("t.csv") + " --definition " + path("both/study.toml") +
+                  " --out " + path("half") + " && haptrial analyze " + path("half") + planned);
   EXPECT_EQ(half.status, 0) << half.errors;
   EXPECT_THAT(half.output, HasSubstr("The planned tests were not made, because"));
 }
