@@ -22,7 +22,7 @@ class NotedInjuries {
   /// @param definition  outlives this  @param real  a person drills
   NotedInjuries(const BoneDefinition& definition, bool real) : d_(definition), real_(real) {}
 
-  /// What follows is done to this bone. @param number  how many bones the trial has had with it
+  /// Later rows are of this bone. @param number  how many bones the trial has had with it
   void begin_bone(const bone::BoneModel& model, std::int32_t number);
 
   void add(SessionFile& file, std::span<const record::RemovalRow> rows);

@@ -11,7 +11,7 @@
 
 namespace haptrial::protocols {
 
-/// What is heard in a session of drillings: the drill, and on the same card the nerves' monitor,
+/// The sound of a session of drillings: the drill, and on the same card the nerves' monitor,
 /// hints and forbidden regions. Silent where the definition asks for no sound card, nobody is there
 /// to hear it, or there is none. Session's thread.
 class TrialSound {

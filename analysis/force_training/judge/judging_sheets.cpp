@@ -28,7 +28,7 @@ int number_of_sheet(std::size_t place, const SheetOptions& options) {
   return static_cast<int>(place) / options.each + 1;
 }
 
-/// What the key says of a curve, without its sheet.
+/// The key's row of a curve, without its sheet.
 std::string key_row(std::size_t place, const JudgedRecall& recall, int repeats) {
   const RecallScore& score = recall.detail.score;
   return fmt::format("{},{},{},{},{},{},{},{}\n", place + 1, recall.session, recall.subject,

@@ -46,8 +46,8 @@ struct ImportedStudy {
   TrialColumns columns;
   std::vector<ImportSource> sources;
   std::vector<ImportedTrial> trials;
-  std::size_t left_out{0};    // rows that are no trials
-  std::size_t unanswered{0};  // trials without an answer
+  std::size_t left_out{0};            // rows that are no trials
+  std::size_t unanswered{0};          // trials without an answer
   std::vector<std::string> warnings;  // of what may not have been meant; each a sentence
 };
 

@@ -50,7 +50,7 @@ Curriculum read_curriculum(Table& table, const std::vector<std::string>& bones);
 struct CaseAttempt {
   std::string name;  // of the case
   std::string date;  // for people
-  /// Of the quantities that its case asks for and it has; infinity: more than is measured.
+  /// Values of the quantities that its case asks for; infinity: more than is measured.
   std::map<std::string, double> values{};
 };
 

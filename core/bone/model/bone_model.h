@@ -29,7 +29,7 @@ struct BoneModel {
   std::vector<std::uint8_t> labels;   // grid.count(); 0: nothing there, else of `structures`
   std::vector<float> density;         // grid.count(), from 0 to 1; empty: 1 wherever a label is
   std::vector<Structure> structures;  // by label; the first stands for nothing
-  /// What was lost of its files, or assumed where they say nothing: sentences to warn with.
+  /// Sentences to warn with: losses of its files, and assumptions where they say nothing.
   std::vector<std::string> notes;
 };
 

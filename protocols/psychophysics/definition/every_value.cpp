@@ -328,7 +328,7 @@ std::vector<EveryValue::Dimension> EveryValue::levels_of(std::size_t block) cons
   return all;
 }
 
-/// Who takes the trial, and when, as far as the block's values depend on it.
+/// The participants and times on which the block's values depend.
 std::vector<EveryValue::Dimension> EveryValue::places_of(std::size_t block) const {
   std::vector<Dimension> all;
   if (read_.contains("participant")) {

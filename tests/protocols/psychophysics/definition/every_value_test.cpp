@@ -1,5 +1,5 @@
-// What only a later group, session, participant, trial, probe or combination of factors would
-// present is checked before anybody comes.
+// Values that only a later group, session, participant, trial, probe or combination of factors
+// would present are checked before anybody comes.
 
 #include "protocols/psychophysics/definition/every_value.h"
 
