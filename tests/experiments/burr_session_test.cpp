@@ -197,7 +197,7 @@ TEST(BurrSessionTest, NoForceIsAboveTheLimitOfTheDefinition) {
   constexpr double kLimit = 0.5;  // [N]
   const test::TemporaryFolder folder;
   const fs::path study =
-      test::write_small_drilling(folder, kSeconds, {{"force_limit", "force_limit = 0.5"}});
+      test::write_small_drilling(folder.path(), kSeconds, {{"force_limit", "force_limit = 0.5"}});
   ASSERT_EQ(dry_run(study, folder / "out").status, 0);
   const record::SessionReader reader(folder / "out" / "S01.h5");
   double most = 0.0;

@@ -209,6 +209,10 @@ TEST_F(NerveSessionTest, AReportIsMadeAndMarkedAsSimulated) {
   const test::CommandResult made = test::run_command("haptrial analyze '" + study.string() + "'");
   ASSERT_EQ(made.status, 0) << made.errors;
   EXPECT_THAT(made.output, HasSubstr("Simulated: monitor on: "));
+  const test::CommandResult planned =
+      test::run_command("haptrial analyze '" + study.string() + "' --planned 'on > off'");
+  EXPECT_EQ(planned.status, 2);
+  EXPECT_THAT(planned.errors, HasSubstr("nothing is learned from session to session"));
   fs::path report;
   for (const auto& entry : fs::recursive_directory_iterator(study)) {
     report = entry.path().filename() == "report.md" ? entry.path() : report;

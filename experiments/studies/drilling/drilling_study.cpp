@@ -133,6 +133,10 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
   if (learns) {
     study.learning.plan =
         plan_for(request.planned, request.reference, study.learning.plan, remarks);
+  } else if (!request.planned.empty() || !request.reference.empty()) {
+    throw InputError(
+        "--planned and --reference are of studies that compare sessions; in this study of "
+        "drillings nothing is learned from session to session; leave them out");
   }
   drilling::ValidityResult result = drilling::analyze(study);
   result.remarks = std::move(remarks);
