@@ -1,5 +1,7 @@
 #include "protocols/force_training/trajectory_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
