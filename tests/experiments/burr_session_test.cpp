@@ -192,20 +192,5 @@ TEST(BurrDefinitionTest, WhatCannotBeIsSaid) {
               HasSubstr("tools.cutting.shaft_length"));
 }
 
-/// The damper that calms a handle comes within the limit, too.
-TEST(BurrSessionTest, NoForceIsAboveTheLimitOfTheDefinition) {
-  constexpr double kLimit = 0.5;  // [N]
-  const test::TemporaryFolder folder;
-  const fs::path study =
-      test::write_small_drilling(folder.path(), kSeconds, {{"force_limit", "force_limit = 0.5"}});
-  ASSERT_EQ(dry_run(study, folder / "out").status, 0);
-  const record::SessionReader reader(folder / "out" / "S01.h5");
-  double most = 0.0;
-  for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
-    most = std::max(most, sample.force.norm());
-  }
-  EXPECT_NEAR(most, kLimit, 1e-6);
-}
-
 }  // namespace
 }  // namespace haptrial::experiments::burr_session_test

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "tests/protocols/interface/turning_handle.h"
 #include "tests/support/allocation_guard.h"
@@ -181,6 +182,31 @@ TEST(DeviceSetTest, WhatDoesNotGiveWayIsEndedAsAnOscillation) {
     const Outcome outcome = outcome_of(0.0, law_of(kFirm[3], part, false), part);
     EXPECT_EQ(outcome.fault, device::Fault::kOscillation) << device::describe(outcome.fault);
   }
+}
+
+/// The greatest force at the grip of a bare handle on a spring that makes it oscillate.
+/// @param most  limit of the protocol's own; the spring gives 1 N at most [N]
+double greatest_at_grip(double most) {
+  TurningHandle handle(kHandle, kHandle);
+  handle.place(0.003);
+  DeviceSet set = set_of(handle, kHandle);
+  const Law law = law_of(kFirm[3], Part::kGrip, false);
+  double greatest = 0.0;
+  for (int i = 0; i < 1500; ++i) {
+    set.read({}, kTick);
+    std::array<Drive, 2> others{};
+    others[1].force = law(set.readings()[2]).cwiseMax(-1.0).cwiseMin(1.0);
+    others[1].most = most;
+    set.limit(PassOutput{}, others, kTick);
+    set.write();
+    greatest = std::max(greatest, std::abs(handle.given.grip));
+  }
+  return greatest;
+}
+
+TEST(DeviceSetTest, TheDamperThatCalmsAHandleComesWithinTheProtocolsLimit) {
+  EXPECT_GT(greatest_at_grip(std::numeric_limits<double>::infinity()), 1.01);
+  EXPECT_LE(greatest_at_grip(1.0), 1.0 + 1e-9);
 }
 
 }  // namespace
