@@ -118,9 +118,12 @@ TEST(EveryValueTest, ANeededThresholdIsKnownByItsFormula) {
 
 /// The first level of a factor may do without a threshold that another one needs.
 TEST(EveryValueTest, AThresholdThatOneLevelNeedsIsKnown) {
-  const std::string factor = "[factors]\nfound = [\"1.0\", \"$stair.threshold\"]\n";
+  std::string text = found_and_used("[factors]\nfound = [1.0, \"$stair.threshold\"]\n", "$session");
+  text = test::replaced(text, "[\"$f\", 0.0, 0.0]", "[\"$f\", \"0.1 * $found\", 0.0]");
+  text = test::replaced(text, "procedures = [\"stair\"]\n[[blocks]]",
+                        "procedures = [\"stair\"]\nfound = 1.0\n[[blocks]]");
   TrialsDefinition d;
-  read_small(found_and_used(factor, "$found"), d);
+  read_small(text, d);
   check_every_value(d);
   EXPECT_THAT(d.order.blocks[1].needs, testing::ElementsAre("stair"));
 }
