@@ -18,10 +18,10 @@ void remove_interval(Estimated& e);
 /// Makes a bootstrap's interval longer where answers scatter beyond chance.
 /// @param factor  1: as chance has it
 void widen(Estimated& e, double factor);
-/// The same on the logarithm, for a number that keeps its sign.
+/// widen() works on the logarithm here, so that a number keeps its sign.
 void widen_log(Estimated& e, double factor);
-/// The same up to the bounds of the fit. A rate at the lower bound has no interval then: samples
-/// that are drawn without lapses do not tell how many there may be.
+/// widen() stops at the bounds of the fit here. A rate at the lower bound loses its interval:
+/// samples that are drawn without lapses do not tell how many there may be.
 void widen_rate(Estimated& e, double factor, const RateBounds& bounds);
 
 }  // namespace haptrial::analysis::trials

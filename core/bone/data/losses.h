@@ -27,7 +27,7 @@ LabelVolumes volumes_of(std::span<const float> labels, const VolumeHead& head,
 /// @param before, after  in the file and in the bone [m3]
 void note_loss(const std::string& file, const Structure& structure, double before, double after,
                BoneModel& model);
-/// The same for all labels of a bone.
+/// Adds such a note for each label of a bone that lost as much.
 void note_losses(const std::string& file, const LabelVolumes& before, BoneModel& model);
 
 }  // namespace haptrial::bone

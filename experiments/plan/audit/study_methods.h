@@ -35,7 +35,7 @@ void add_participants(const std::vector<MethodsSession>& sessions,
                       const protocols::Definition& definition, analysis::Document& document);
 void add_apparatus(const std::vector<MethodsSession>& sessions,
                    const protocols::Definition& definition, analysis::Document& document);
-/// What is not known of sessions that another program ran.
+/// States the facts that nobody knows of sessions that another program ran.
 void add_imported(const std::vector<MethodsSession>& sessions, analysis::Document& document);
 /// Trials as planned and as done, and in how many of each group a tutor led the hand.
 void add_done(const std::vector<MethodsSession>& sessions, const protocols::Definition& definition,

@@ -335,7 +335,9 @@ std::vector<EveryValue::Dimension> EveryValue::places_of(std::size_t block) cons
     all.push_back(
         {static_cast<std::size_t>(d_.order.participants), [this](std::size_t i, TrialValues& v) {
            v.participant = static_cast<int>(i) + 1;
-           v.group = group_of(d_.groups, static_cast<int>(i));
+           if (d_.groups.size() > 1) {  // else it is everybody's
+             v.group = group_of(d_.groups, static_cast<int>(i));
+           }
          }});
   } else if (read_.contains("group")) {
     all.push_back(
@@ -360,8 +362,8 @@ std::vector<EveryValue::Dimension> EveryValue::places_of(std::size_t block) cons
   return all;
 }
 
-/// Visits every combination, or where these are too many so many of them that each value comes in
-/// some.
+/// Visits every combination. Where there are more than kMostValues, it visits only so many that
+/// each value comes once at least.
 /// @returns how many were visited, and how many there are
 std::pair<std::size_t, double> EveryValue::visit(
     std::size_t block, const std::vector<Dimension>& dimensions,
