@@ -33,9 +33,9 @@ std::string_view unwrapped(std::string_view text) {
 }
 
 bool is_missing(std::string_view text) {
-  constexpr std::array<std::string_view, 8> kMissing{"",    "null", "none",      "na",
-                                                     "n/a", "nan",  "undefined", "[]"};
-  return std::ranges::find(kMissing, lower_case(text)) != kMissing.end();
+  constexpr std::array<std::string_view, 10> kMissing{"",    "null", "None", "NA",        "N/A",
+                                                      "n/a", "NaN",  "nan",  "undefined", "[]"};
+  return std::ranges::find(kMissing, text) != kMissing.end();
 }
 
 }  // namespace haptrial::analysis::trials

@@ -145,14 +145,14 @@ std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& a
   if (kind != "psychometric") {
     return text;
   }
-  const std::size_t answers = answers_of(study).size();
   if (analysis.guess) {
     text += fmt::format("guess = {}\n", *analysis.guess);
   } else if (analysis.yes.empty() && study.columns.answer.empty()) {
     throw InputError(
         "no column has the answers, so that nobody knows how often guessing is right; add --guess "
         "RATE, as 0.5 of two alternatives");
-  } else if (analysis.yes.empty() && answers > 1) {
+  } else if (const std::size_t answers = answers_of(study).size();
+             analysis.yes.empty() && answers > 1) {
     text += fmt::format("guess = {}\n", 1.0 / static_cast<double>(answers));
   }
   return text;
@@ -198,6 +198,28 @@ std::vector<std::string> answers_of(const ImportedStudy& study) {
   }
   answers.erase("");
   return {answers.begin(), answers.end()};
+}
+
+std::string guess_note(const ImportedStudy& study, const ImportedAnalysis& analysis) {
+  const bool of_answers = !analysis.guess && analysis.yes.empty() && !study.columns.answer.empty();
+  if (!of_answers || kind_of(study, analysis) != "psychometric") {
+    return "";
+  }
+  std::map<std::string, std::size_t> counts;
+  for (const ImportedTrial& trial : study.trials) {
+    ++counts[trial.answer];
+  }
+  counts.erase("");
+  if (counts.size() < 2) {
+    return "";
+  }
+  std::vector<std::string> answers;
+  for (const auto& [answer, count] : counts) {
+    answers.push_back(fmt::format("{} ({})", answer, count));
+  }
+  return fmt::format("guess rate {:.3g}, one in the {} answers {}; --guess RATE states another",
+                     1.0 / static_cast<double>(counts.size()), counts.size(),
+                     fmt::join(answers, ", "));
 }
 
 std::string imported_definition(const ImportedStudy& study, const ImportedAnalysis& analysis) {

@@ -27,6 +27,11 @@ std::vector<std::string> answers_of(const ImportedStudy& study);
 /// The answer of a trial as a word: "right" or "wrong" where the table has no answers.
 std::string answer_word(const ImportedStudy& study, const ImportedTrial& trial);
 
+/// The guess rate that the number of different answers gives, and the answers with their trials, so
+/// that a mistyped one is seen; empty where the rate is stated or not used.
+/// @throws InputError as imported_definition()
+std::string guess_note(const ImportedStudy& study, const ImportedAnalysis& analysis);
+
 /// Text of a definition of protocol "trials" by which imported trials are analysed. It presents
 /// nothing: its only stage ends at once.
 /// @throws InputError if the columns do not say which answer counts, or do not fit the kind

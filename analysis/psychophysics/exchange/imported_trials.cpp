@@ -15,6 +15,7 @@
 #include "analysis/files/sha256.h"
 #include "analysis/psychophysics/exchange/field_text.h"
 #include "core/base/alike_names.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/record/rows/trial_rows.h"
@@ -64,6 +65,13 @@ class TableRows {
     }
     return std::ranges::any_of(factors_,
                                [&](std::size_t at) { return !is_missing(table_.text(row, at)); });
+  }
+
+  /// The word of a row that is read as no answer; empty for an answer, and for none.
+  std::string_view missing_answer(std::size_t row) const {
+    const auto at = place(&TrialColumns::answer);
+    const std::string_view text = at ? table_.text(row, *at) : std::string_view();
+    return is_missing(text) ? text : std::string_view();
   }
 
   ImportedTrial trial(std::size_t row) const {
@@ -204,8 +212,11 @@ class TableRows {
     const std::string_view text = table_.text(row, at);
     if (is_missing(text) || text.size() > record::kTrialWordBytes) {
       table_.refuse(row, at,
-                    "a number or a word of at most 64 bytes; rows that are no trials go by --only "
-                    "COLUMN=VALUE");
+                    is_missing(text)
+                        ? "a level: this is what programs write where there is none; write another "
+                          "word, or leave the rows out by --only COLUMN=VALUE"
+                        : "a number or a word of at most 64 bytes; rows that are no trials go by "
+                          "--only COLUMN=VALUE");
     }
     return {number_in(text).value_or(std::numeric_limits<double>::quiet_NaN()), std::string(text)};
   }
@@ -232,6 +243,9 @@ void read_table(const fs::path& file, ImportedStudy& study) {
     trial.source = source;
     const bool answered = study.columns.answer.empty() ? trial.correct >= 0 : !trial.answer.empty();
     study.unanswered += answered ? 0 : 1;
+    if (const auto word = rows.missing_answer(row); !word.empty()) {
+      ++study.missing_answers[std::string(word)];
+    }
     study.trials.push_back(std::move(trial));
   }
 }
@@ -268,13 +282,37 @@ void settle_factors(ImportedStudy& study) {
   }
 }
 
-void warn_of_participants(ImportedStudy& study) {
-  std::set<std::string> people;
+void warn_of_alike(ImportedStudy& study, const std::string& what,
+                   const std::set<std::string>& names) {
+  const auto warnings = alike_names_warnings(what, {names.begin(), names.end()});
+  study.warnings.insert(study.warnings.end(), warnings.begin(), warnings.end());
+}
+
+/// Warns of names that may have been meant as one.
+void warn_of_alike_names(ImportedStudy& study) {
+  std::set<std::string> people, answers;
+  std::vector<std::set<std::string>> levels(study.columns.factors.size());
   for (const ImportedTrial& trial : study.trials) {
     people.insert(trial.participant);
+    answers.insert(trial.answer);
+    for (std::size_t f = 0; f < levels.size(); ++f) {
+      levels[f].insert(trial.factors[f].word);
+    }
   }
-  const auto warnings = alike_names_warnings("participants", {people.begin(), people.end()});
-  study.warnings.insert(study.warnings.end(), warnings.begin(), warnings.end());
+  warn_of_alike(study, "participants", people);
+  warn_of_alike(study, "answers", answers);
+  for (std::size_t f = 0; f < levels.size(); ++f) {
+    warn_of_alike(study, "levels of " + study.columns.factors[f].column, levels[f]);
+  }
+}
+
+/// Warns of words in the answers' column that are taken for no answer.
+void warn_of_missing(ImportedStudy& study) {
+  for (const auto& [text, count] : study.missing_answers) {
+    study.warnings.push_back(fmt::format(
+        "WARNING: in {} '{}' is read as no answer, in {}; if it is one, write another word.",
+        study.columns.answer, text, counted(count, "trial", "trials")));
+  }
 }
 
 /// PsychoPy writes a file for each session, and people seldom change its number.
@@ -320,7 +358,8 @@ ImportedStudy read_trial_tables(const std::vector<fs::path>& files, const TrialC
                                  files.front().string()));
   }
   settle_factors(study);
-  warn_of_participants(study);
+  warn_of_alike_names(study);
+  warn_of_missing(study);
   refuse_twins(study);
   return study;
 }

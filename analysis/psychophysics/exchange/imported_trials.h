@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,9 @@ struct ImportedStudy {
   TrialColumns columns;
   std::vector<ImportSource> sources;
   std::vector<ImportedTrial> trials;
-  std::size_t left_out{0};            // rows that are no trials
-  std::size_t unanswered{0};          // trials without an answer
+  std::size_t left_out{0};                             // rows that are no trials
+  std::size_t unanswered{0};                           // trials without an answer
+  std::map<std::string, std::size_t> missing_answers;  // trials by the word read as no answer
   std::vector<std::string> warnings;  // of what may not have been meant; each a sentence
 };
 

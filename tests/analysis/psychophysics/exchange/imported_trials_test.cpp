@@ -16,6 +16,7 @@
 namespace haptrial::analysis::trials {
 namespace {
 
+using testing::Contains;
 using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
@@ -167,13 +168,41 @@ TEST_F(ImportedTrialsTest, WordsKeepTheSpellingOfTheirFields) {
   }
   EXPECT_THAT(words, ElementsAre("1", "01", "1.0", "x"));
   EXPECT_TRUE(std::isnan(study.trials[0].factors[0].number));
-  EXPECT_THAT(study.warnings, IsEmpty());
+  EXPECT_THAT(study.warnings, ElementsAre(HasSubstr("different levels of code: \"01\", \"1\"")));
 }
 
 TEST_F(ImportedTrialsTest, ParticipantsWithAlikeNamesAreSaid) {
   const std::string text = "subject,correct\nP1,1\nP2,0\np1,1\nP01,1\n";
   EXPECT_THAT(read(text, guessed(text)).warnings,
               ElementsAre(HasSubstr("different participants: \"P01\", \"P1\", \"p1\"")));
+}
+
+TEST_F(ImportedTrialsTest, AMistypedAnswerIsSaidWithTheGuessRate) {
+  const std::string text =
+      "subject,level,correct,answer,side\na,1,1,left,Up\na,2,0,right,up\na,3,1,Right,up\n";
+  TrialColumns columns = guessed(text);
+  add_factor("side", columns);
+  const ImportedStudy study = read(text, columns);
+  EXPECT_THAT(study.warnings, ElementsAre(HasSubstr("different answers: \"Right\", \"right\""),
+                                          HasSubstr("different levels of side: \"Up\", \"up\"")));
+  EXPECT_THAT(guess_note(study, {"s", "", "", {}}),
+              HasSubstr("guess rate 0.333, one in the 3 answers Right (1), left (1), right (1)"));
+  EXPECT_EQ(guess_note(study, {"s", "", "", 0.5}), "");
+  EXPECT_EQ(guess_note(study, {"s", "", "left", {}}), "");
+}
+
+TEST_F(ImportedTrialsTest, TheWordNoneIsAnAnswerAndALevel) {
+  const std::string text =
+      "subject,level,answer,load\na,1,some,none\na,2,none,heavy\na,2,None,none\n";
+  TrialColumns columns = guessed(text);
+  add_factor("load", columns);
+  const ImportedStudy study = read(text, columns);
+  EXPECT_EQ(study.trials[1].answer, "none");
+  EXPECT_EQ(study.trials[0].factors[0].word, "none");
+  EXPECT_EQ(study.unanswered, 1u);
+  EXPECT_THAT(study.warnings, Contains(HasSubstr("'None' is read as no answer, in 1 trial")));
+  EXPECT_THAT(refusal("subject,level,answer,load\na,1,some,None\n", columns),
+              HasSubstr("load is 'None'; allowed: a level"));
 }
 
 TEST_F(ImportedTrialsTest, SpellingsOfOneNumberAreSaid) {
