@@ -151,7 +151,7 @@ std::string compared_words(const TrialsResult& result) {
   for (const Quantity& quantity : result.quantities) {
     if (quantity.compared && quantity.table.cells.size() > 1) {
       add(comparison_words(quantity.tests));
-      std::ranges::for_each(sentences_beside(quantity.tests, quantity.title), add);
+      std::ranges::for_each(sentences_beside(quantity.tests, tested_title(result, quantity)), add);
     }
   }
   return all.empty() ? " No conditions were compared." : fmt::format(" {}", fmt::join(all, " "));

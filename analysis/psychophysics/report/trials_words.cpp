@@ -127,13 +127,14 @@ void say_ended_tracks(const TrialsResult& result, std::vector<std::string>& line
   }
 }
 
-void add_tests(const Quantity& q, bool effects, std::vector<std::string>& lines) {
+void add_tests(const TrialsResult& result, const Quantity& q, bool effects,
+               std::vector<std::string>& lines) {
   if (!q.compared || !q.headline) {
     return;
   }
   const auto add = [&](std::vector<std::string> more) {
     for (std::string& line : more) {
-      lines.push_back(capitalized(q.title) + ". " + line);
+      lines.push_back(capitalized(tested_title(result, q)) + ". " + line);
     }
   };
   if (effects) {
@@ -273,6 +274,11 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
                      number(low), number(high));
 }
 
+std::string tested_title(const TrialsResult& result, const Quantity& q) {
+  const bool same = q.unit.empty() || q.unit == result.plan.function.axis.unit;
+  return q.title + (same ? "" : ", in " + q.unit);
+}
+
 std::string unit_word(const TrialsResult& result, const Quantity& q) {
   const std::string& unit = on_axis(q) ? result.plan.function.axis.unit : q.unit;
   return unit.empty() ? std::string() : " " + unit;
@@ -327,7 +333,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     }
   }
   for (const Quantity& q : result.quantities) {
-    add_tests(q, !result.cues, lines);
+    add_tests(result, q, !result.cues, lines);
   }
   if (result.hierarchical) {
     lines.push_back(hierarchical_sentence(result));

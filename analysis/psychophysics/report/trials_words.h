@@ -30,6 +30,9 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
 /// The unit in which mean_word() is: " N/m", or empty.
 std::string unit_word(const TrialsResult& result, const Quantity& q);
 
+/// "threshold", or "threshold, in log10(N/m)" where its tests are in another unit than its means.
+std::string tested_title(const TrialsResult& result, const Quantity& q);
+
 /// The results in a few lines, for the command and the head of the report.
 std::vector<std::string> summary_lines(const TrialsResult& result);
 /// Sentences on ticks on which bodies that give way were not felt as they should be.

@@ -82,9 +82,10 @@ const Schema<TestsBeside>& beside_keys() {
                 "Whether planned tests have Bayes factors: of the effect against none, with a "
                 "Cauchy prior of scale 0.707 on its size, on one side for a directed test")
           .number("equivalence", &B::equivalence, {0.0, 1e9}, "",
-                  "Largest difference that counts as none, in the unit of the tested values: "
-                  "planned tests also say whether the difference lies within it, by two one-sided "
-                  "tests; 0: they do not")
+                  "Largest difference that counts as none, in the unit of the tested values (of "
+                  "thresholds on a logarithmic scale a difference of logarithms: 0.1 of log10 is a "
+                  "factor of 1.26): planned tests also say whether the difference lies within it, "
+                  "by two one-sided tests; 0: they do not")
           .text("equivalence_of", &B::equivalence_of,
                 "The quantity whose differences the bound is of, by its name in results.json; "
                 "others have no such test")
