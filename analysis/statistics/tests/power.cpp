@@ -12,7 +12,7 @@ namespace haptrial::analysis {
 namespace {
 
 double t_df(const TPlan& plan, double n) {
-  return plan.design == TDesign::kTwoSample ? 2.0 * (n - 1.0) : n - 1.0;
+  return plan.design == TDesign::kTwoSample ? n * (1.0 + plan.ratio) - 2.0 : n - 1.0;
 }
 
 // The t that the central distribution exceeds with this probability.
@@ -27,7 +27,9 @@ double t_critical(double probability, double df) {
 
 double t_curve(const TPlan& plan, double n, double delta) {
   const double df = t_df(plan, n);
-  const double noncentrality = delta * std::sqrt(plan.design == TDesign::kTwoSample ? 0.5 * n : n);
+  const double cases =
+      plan.design == TDesign::kTwoSample ? n * plan.ratio / (1.0 + plan.ratio) : n;
+  const double noncentrality = delta * std::sqrt(cases);
   const double critical = t_critical(plan.one_tailed ? plan.alpha : 0.5 * plan.alpha, df);
   const double power = noncentral_t(critical, df, noncentrality).upper;
   return plan.one_tailed ? power

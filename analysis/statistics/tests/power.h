@@ -5,7 +5,7 @@
 
 namespace haptrial::analysis {
 
-/// A t-test that is planned. Of two samples `n` is the size of each; of pairs their number, and
+/// A t-test that is planned. Of two samples `n` is the size of the first; of pairs their number, and
 /// `delta` is the mean difference by the standard deviation of the differences.
 enum class TDesign { kOneSample, kTwoSample, kPaired };
 
@@ -13,6 +13,7 @@ struct TPlan {
   TDesign design{TDesign::kTwoSample};
   double alpha{0.05};
   bool one_tailed{false};  // else both tails count, also the one against the effect
+  double ratio{1.0};       // size of the second of two samples by that of the first; > 0
 };
 
 /// A one-way analysis of variance that is planned: `n` is the size of each group, f the standard

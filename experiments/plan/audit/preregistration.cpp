@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "analysis/files/sha256.h"
 #include "analysis/statistics/design/sequential_plan.h"
@@ -76,28 +77,49 @@ std::vector<PlannedGroup> planned_groups(const protocols::Definition& definition
   return planned;
 }
 
-/// Power of the t test that [plan] states; of two samples n is the size of the smaller half.
-std::vector<std::string> power_of_t(const PlanTable& table, int participants) {
+/// Sizes of the two samples of a two-sample test: the study's two groups, or the smallest two of
+/// several, which have the least power; without groups, halves.
+std::pair<int, int> samples_of(const StudyPlan& plan) {
+  if (plan.groups.size() < 2) {
+    return {plan.participants() / 2, plan.participants() / 2};
+  }
+  std::vector<int> sizes;
+  for (const PlannedGroup& group : plan.groups) {
+    sizes.push_back(group.participants);
+  }
+  if (sizes.size() > 2) {
+    std::ranges::sort(sizes);
+  }
+  return {sizes[0], sizes[1]};
+}
+
+/// Power of the t test that [plan] states.
+std::vector<std::string> power_of_t(const PlanTable& table, const StudyPlan& plan) {
   if (!table.effect) {
     return {};
   }
-  const bool two = table.design == PlannedDesign::kTwoSample;
-  const analysis::TPlan plan{two ? analysis::TDesign::kTwoSample
-                             : table.design == PlannedDesign::kPaired
-                                 ? analysis::TDesign::kPaired
-                                 : analysis::TDesign::kOneSample,
-                             table.alpha, false};
-  const int n = two ? participants / 2 : participants;
-  const auto power = analysis::t_power(plan, n, std::abs(*table.effect));
-  return {
-      fmt::format("a two-tailed {} t test at {:g} with {} participants{} finds a standardized "
-                  "effect of {:g} with {}",
-                  two                                      ? "two-sample"
-                  : table.design == PlannedDesign::kPaired ? "paired"
-                                                           : "one-sample",
-                  table.alpha, n, two ? " in each group" : "", *table.effect,
-                  power ? fmt::format("a power of {:.3f}", *power)
-                        : "no known power, because " + power.because())};
+  analysis::TPlan test{analysis::TDesign::kOneSample, table.alpha, false};
+  const char* name = "one-sample";
+  int n = plan.participants();
+  std::string people = counted(n, "participant", "participants");
+  if (table.design == PlannedDesign::kPaired) {
+    test.design = analysis::TDesign::kPaired;
+    name = "paired";
+  } else if (table.design == PlannedDesign::kTwoSample) {
+    const auto [first, second] = samples_of(plan);
+    test.design = analysis::TDesign::kTwoSample;
+    test.ratio = static_cast<double>(second) / std::max(first, 1);
+    name = "two-sample";
+    n = first;
+    people = fmt::format("{} and {} participants{}", first, second,
+                         plan.groups.size() > 2 ? ", the smallest two groups," : "");
+  }
+  const auto power = analysis::t_power(test, n, std::abs(*table.effect));
+  return {fmt::format(
+      "a two-tailed {} t test at {:g} with {} finds a standardized effect of {:g} with {}", name,
+      table.alpha, people, *table.effect,
+      power ? fmt::format("a power of {:.3f}", *power)
+            : "no known power, because " + power.because())};
 }
 
 std::vector<std::string> or_none(const std::vector<std::string>& texts, const char* none) {
@@ -145,7 +167,7 @@ StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
   }
   add_early_end(d, plan);
   plan.retain_until = table.retain_until;
-  plan.power = simulation.empty() ? power_of_t(table, plan.participants())
+  plan.power = simulation.empty() ? power_of_t(table, plan)
                                   : simulated_power(simulation, plan.name, plan.participants());
   return plan;
 }

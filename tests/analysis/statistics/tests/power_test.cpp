@@ -55,6 +55,14 @@ TEST(Power, OfTwoGroupsIsThatOfTheTwoSidedT) {
   }
 }
 
+TEST(Power, OfUnequalGroupsIsThatOfR) {
+  // 4 and 20 people, d = 0.9: pt() of R at 22 degrees of freedom and ncp 0.9 / sqrt(1/4 + 1/20).
+  TPlan plan{TDesign::kTwoSample, 0.05, false, 5.0};
+  EXPECT_NEAR(*t_power(plan, 4.0, 0.9), 0.3490821112, 1e-9);
+  plan.one_tailed = true;
+  EXPECT_NEAR(*t_power(plan, 4.0, 0.9), 0.4790814421, 1e-9);
+}
+
 TEST(SampleSize, IsTheFirstThatSuffices) {
   const TPlan plan{TDesign::kTwoSample, 0.05, false};
   const auto size = t_sample_size(plan, 0.5, 0.8);
