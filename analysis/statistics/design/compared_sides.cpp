@@ -21,22 +21,43 @@ bool equally_large(const Sides& sides) {
   });
 }
 
-Defined<TTest> stratified(const Sides& sides, Tail tail) {
-  std::vector<std::vector<double>> a;
-  std::vector<std::vector<double>> b;
-  for (const auto& [key, values] : sides.strata) {
-    const auto& [first, second] = values;
-    if (!sides.paired) {
+/// Ranks, permutations and the bootstrap take the values of a side together. That holds within
+/// people, where equally large groups are weighed alike; between people the difference of the
+/// groups would count as their spread.
+bool can_be_pooled(const Sides& sides) {
+  return sides.strata.size() < 2 || (sides.paired && equally_large(sides));
+}
+
+/// The values of each stratum and side; differences alone where they are paired.
+struct Strata {
+  explicit Strata(const Sides& sides) {
+    for (const auto& [key, values] : sides.strata) {
+      const auto& [first, second] = values;
       a.push_back(first);
-      b.push_back(second);
-      continue;
-    }
-    auto& differences = a.emplace_back();
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      differences.push_back(first[i] - second[i]);
+      if (!sides.paired) {
+        b.push_back(second);
+        continue;
+      }
+      std::transform(first.begin(), first.end(), second.begin(), a.back().begin(), std::minus<>{});
     }
   }
-  return stratified_t_test(a, b, tail);
+
+  std::vector<std::vector<double>> a, b;
+};
+
+void compare_means(SideTest& test, const Sides& values) {
+  const Tail tail = test.sides.tail;
+  if (values.strata.size() > 1) {
+    const Strata strata(values);
+    test.t = stratified_t_test(strata.a, strata.b, tail);
+    test.size = stratified_d(strata.a, strata.b);
+  } else if (values.paired) {
+    test.t = paired_t_test(values.a, values.b, tail);
+    test.size = cohens_dz(values.a, values.b);
+  } else {
+    test.t = welch_t_test(values.a, values.b, tail);
+    test.size = cohens_d(values.a, values.b);
+  }
 }
 
 /// The factor of Student's test, which takes the variances of both sides to be alike.
@@ -94,6 +115,32 @@ void resample(SideTest& test, const Sides& values, Resampling resampling) {
       resampling);
 }
 
+SideTest undefined_test(const PlannedTest& sides, const TestsBeside& beside,
+                        const std::string& covariate, const Undefined& why) {
+  SideTest test;
+  test.sides = sides;
+  test.beside = beside;
+  test.covariate = covariate;
+  test.t = why;
+  test.size = why;
+  test.ranks = why;
+  test.permutation = why;
+  test.bootstrap = why;
+  if (beside.bayes_factors) {
+    test.bayes_factor = why;
+  }
+  if (beside.equivalence > 0.0) {
+    test.equivalence = why;
+  }
+  if (beside.trimmed > 0.0) {
+    test.trimmed = why;
+  }
+  if (!covariate.empty()) {
+    test.adjusted = why;
+  }
+  return test;
+}
+
 }  // namespace
 
 std::string name_of_test(const SideTest& test) { return test.paired ? "paired t" : "Welch's t"; }
@@ -101,6 +148,9 @@ std::string name_of_test(const SideTest& test) { return test.paired ? "paired t"
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
                   const Resampling& resampling, const TestsBeside& beside,
                   const Covariate& covariate) {
+  if (const auto why = why_not_comparable(table, sides, a, b)) {
+    return undefined_test(sides, beside, covariate.name, Undefined{*why});
+  }
   const Sides values = values_of(table, a, b);
   SideTest test;
   test.sides = std::move(sides);
@@ -119,44 +169,20 @@ SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, c
   if (beside.trimmed > 0.0) {
     test.trimmed = trimmed_test_of(values, beside.trimmed, tail);
   }
-  if (values.strata.size() > 1 && !equally_large(values)) {
-    const Undefined why{"groups of different size are weighed alike, which only the t-test does"};
-    test.t = stratified(values, tail);
-    add_equivalence(test);
-    test.size = why;
+  compare_means(test, values);
+  add_equivalence(test);
+  if (!can_be_pooled(values)) {
+    const Undefined why{"other groups lie across both sides"};
     test.ranks = why;
     test.permutation = why;
     test.bootstrap = why;
     return test;
   }
-  if (values.paired) {
-    test.t = paired_t_test(values.a, values.b, tail);
-    test.size = cohens_dz(values.a, values.b);
-    test.ranks = wilcoxon_signed_rank(values.a, values.b, tail);
-  } else {
-    test.t = welch_t_test(values.a, values.b, tail);
-    test.size = cohens_d(values.a, values.b);
-    test.ranks = mann_whitney(values.a, values.b, tail);
-  }
-  if (values.strata.size() > 1) {
-    test.t = stratified(values, tail);
-  }
-  add_equivalence(test);
+  test.ranks = values.paired ? wilcoxon_signed_rank(values.a, values.b, tail)
+                             : mann_whitney(values.a, values.b, tail);
   if (resampling.count > 0) {
     resample(test, values, resampling);
   }
-  return test;
-}
-
-SideTest without_trials(const PlannedTest& sides, const std::string& missing) {
-  const Undefined why{fmt::format("there are no trials of '{}'", missing)};
-  SideTest test;
-  test.sides = sides;
-  test.t = why;
-  test.size = why;
-  test.ranks = why;
-  test.permutation = why;
-  test.bootstrap = why;
   return test;
 }
 

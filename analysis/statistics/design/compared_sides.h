@@ -43,13 +43,10 @@ struct SideTest {
 /// "paired t" or "Welch's t".
 std::string name_of_test(const SideTest& test);
 
-/// The test of two sides, each with cells.
+/// The test of two sides, each with cells; undefined where why_not_comparable() has a reason.
 /// @param resampling  of the permutation test and the bootstrap interval; none with a count of 0.
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
                   const Resampling& resampling, const TestsBeside& beside = {},
                   const Covariate& covariate = {});
-
-/// A test that is not defined. @param missing  the side without trials.
-SideTest without_trials(const PlannedTest& sides, const std::string& missing);
 
 }  // namespace haptrial::analysis

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <optional>
 #include <string_view>
 
 #include "analysis/files/csv.h"
@@ -25,17 +26,32 @@ std::string line_of(const Defined<EffectTest>& effect) {
                      effect->p < kAlpha ? "significant" : "not shown", effect_result(*effect));
 }
 
+bool decides(const SequentialResult& rule, const SideTest& test) {
+  return text_of(rule.test) == text_of(test.sides);
+}
+
+/// A test is significant by its p, but the one that decides when a study ends by its rule alone.
+bool is_significant(const SideTest& test, const std::optional<SequentialResult>& rule) {
+  return rule && decides(*rule, test) ? rule->verdict == SequentialVerdict::kEffect
+                                      : *test.holm < kAlpha;
+}
+
 /// A test that finds nothing says what it cannot exclude.
-std::string line_of(const SideTest& test) {
+std::string line_of(const SideTest& test, const std::optional<SequentialResult>& rule) {
   const std::string name = "Planned, " + text_of(test.sides);
   if (!test.t || !test.holm) {
     return fmt::format("{}: not defined, because {}", name, test.t.because());
   }
-  if (*test.holm < kAlpha) {
-    return fmt::format("{}: significant; {}", name, side_result(test));
+  const std::string result =
+      side_result(test) +
+      (rule ? "; p and intervals as if the number of participants had been fixed" : "");
+  if (is_significant(test, rule)) {
+    return fmt::format("{}: significant; {}", name, result);
   }
-  return fmt::format("{}: not shown, and differences up to {} are compatible with the data; {}",
-                     name, number(std::max(-test.t->low, test.t->high)), side_result(test));
+  const bool open = rule && decides(*rule, test) && rule->verdict == SequentialVerdict::kGoOn;
+  return fmt::format("{}: {}, and differences up to {} are compatible with the data; {}", name,
+                     open ? "not decided yet" : "not shown",
+                     number(std::max(-test.t->low, test.t->high)), result);
 }
 
 bool is_planned(const DesignTests& tests, const PlannedTest& sides) {
@@ -140,7 +156,7 @@ std::vector<std::string> effect_lines(const DesignTests& tests) {
 std::vector<std::string> planned_lines(const DesignTests& tests) {
   std::vector<std::string> lines;
   for (const SideTest& test : tests.planned.tests) {
-    lines.push_back(line_of(test));
+    lines.push_back(line_of(test, tests.sequential));
   }
   if (tests.sequential) {
     lines.push_back("When the study ends: " + words_of(*tests.sequential));

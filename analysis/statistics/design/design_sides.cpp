@@ -60,6 +60,34 @@ std::vector<std::size_t> factors_across(const DesignTable& table, const Cells& a
   return across;
 }
 
+/// The combinations of the other factors' levels that some cells have.
+std::set<std::vector<std::size_t>> combinations_beside(const DesignTable& table, const Cells& cells,
+                                                       std::size_t factor) {
+  std::set<std::vector<std::size_t>> combinations;
+  for (const std::size_t cell : cells) {
+    std::vector<std::size_t> levels = table.cells[cell];
+    levels.erase(levels.begin() + static_cast<std::ptrdiff_t>(factor));
+    combinations.insert(levels);
+  }
+  return combinations;
+}
+
+bool is_condition(const DesignTable& table, const std::string& side) {
+  return std::ranges::find(table.names, side) != table.names.end();
+}
+
+/// The factor of which both sides have one level, each another; nothing if there is none.
+std::optional<std::size_t> compared_factor(const DesignTable& table, const Cells& a,
+                                           const Cells& b) {
+  for (std::size_t f = 0; f < table.factors.size(); ++f) {
+    const auto in_a = levels_in(table, a, f), in_b = levels_in(table, b, f);
+    if (in_a.size() == 1 && in_b.size() == 1 && in_a != in_b) {
+      return f;
+    }
+  }
+  return std::nullopt;
+}
+
 std::vector<std::size_t> stratum_of(const DesignTable& table, std::size_t subject,
                                     const std::vector<std::size_t>& factors) {
   const auto& means = table.means[subject];
@@ -113,6 +141,31 @@ std::vector<std::string> known_sides(const DesignTable& table) {
     }
   }
   return known;
+}
+
+std::optional<std::string> why_not_comparable(const DesignTable& table, const PlannedTest& sides,
+                                              const Cells& a, const Cells& b) {
+  if (a.empty() || b.empty()) {
+    return fmt::format("there are no trials of '{}'", a.empty() ? sides.a : sides.b);
+  }
+  if (table.crossed || is_condition(table, sides.a) || is_condition(table, sides.b)) {
+    return std::nullopt;
+  }
+  const auto factor = compared_factor(table, a, b);
+  if (!factor) {
+    return std::nullopt;
+  }
+  const auto of_a = combinations_beside(table, a, *factor);
+  const auto of_b = combinations_beside(table, b, *factor);
+  // Levels nested in others have no combination in common, and are compared as they are.
+  const bool share = std::ranges::any_of(of_a, [&](const auto& c) { return of_b.contains(c); });
+  if (of_a == of_b || !share) {
+    return std::nullopt;
+  }
+  return fmt::format(
+      "some combinations of levels have no trials, so '{}' and '{}' differ in other factors, too; "
+      "name conditions, such as '{}'",
+      sides.a, sides.b, table.names.front());
 }
 
 Sides values_of(const DesignTable& table, const Cells& a, const Cells& b) {

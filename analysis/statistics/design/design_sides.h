@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/design/analysis_plan.h"
 #include "analysis/statistics/design/design_table.h"
 
 namespace haptrial::analysis {
@@ -22,6 +24,12 @@ Cells cells_of(const DesignTable& table, const std::string& side);
 
 /// Sides that cells_of() knows: conditions, and levels if there are several factors.
 std::vector<std::string> known_sides(const DesignTable& table);
+
+/// The reason why the means of two sides cannot be compared, if there is one: a side has no trials,
+/// or some combinations of levels have none, so that two levels of a factor would differ in the
+/// other factors, too.
+std::optional<std::string> why_not_comparable(const DesignTable& table, const PlannedTest& sides,
+                                              const Cells& a, const Cells& b);
 
 /// The values of two sides: pairs of the same participants, or different people.
 struct Sides {

@@ -40,13 +40,8 @@ TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
                          const Resampling& resampling) {
   TestFamily family{"planned", {}};
   for (const PlannedTest& test : plan.tests) {
-    const Cells a = cells_of(table, test.a);
-    const Cells b = cells_of(table, test.b);
-    if (a.empty() || b.empty()) {
-      family.tests.push_back(without_trials(test, a.empty() ? test.a : test.b));
-    } else {
-      family.tests.push_back(compared(table, test, a, b, resampling, plan.beside, plan.covariate));
-    }
+    family.tests.push_back(compared(table, test, cells_of(table, test.a), cells_of(table, test.b),
+                                    resampling, plan.beside, plan.covariate));
   }
   adjust(family);
   return family;

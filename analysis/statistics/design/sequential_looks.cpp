@@ -47,21 +47,19 @@ class Looks {
 
   /// @returns whether the study goes on
   bool look(std::size_t participants, double bound) {
-    SequentialLook look{participants, Undefined{"a condition has no values"}, bound};
-    if (!a_.empty() && !b_.empty()) {
-      TestsBeside beside;
-      beside.bayes_factors = result_.plan.rule == StopRule::kBayesFactor;
-      const SideTest test = compared(with_only(table_, order_.first(participants)), result_.test,
-                                     a_, b_, Resampling{1, "", 0, 1}, beside);
-      look.value = beside.bayes_factors ? test.bayes_factor : z_of(test);
-    }
+    TestsBeside beside;
+    beside.bayes_factors = result_.plan.rule == StopRule::kBayesFactor;
+    const SideTest test = compared(with_only(table_, order_.first(participants)), result_.test, a_,
+                                   b_, Resampling{1, "", 0, 1}, beside);
+    const SequentialLook look{participants, beside.bayes_factors ? test.bayes_factor : z_of(test),
+                              bound};
     const double none = result_.plan.none;
     if (look.value && *look.value >= bound) {
       result_.verdict = SequentialVerdict::kEffect;
     } else if (look.value && none > 0.0 && *look.value <= 1.0 / none) {
       result_.verdict = SequentialVerdict::kNoEffect;
     }
-    result_.looks.push_back(std::move(look));
+    result_.looks.push_back(look);
     return result_.verdict == SequentialVerdict::kGoOn;
   }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/noncentral.h"
 #include "analysis/statistics/tests/t_tests.h"
 
@@ -54,6 +56,34 @@ Defined<EffectSize> cohens_d(std::span<const double> a, std::span<const double> 
 Defined<EffectSize> cohens_dz(std::span<const double> a, std::span<const double> b, double level) {
   return standardised(paired_t_test(a, b, Tail::kTwoSided),
                       1.0 / std::sqrt(static_cast<double>(a.size())), level);
+}
+
+Defined<EffectSize> stratified_d(const std::vector<std::vector<double>>& a,
+                                 const std::vector<std::vector<double>>& b, double level) {
+  const auto strata = static_cast<double>(a.size());
+  double difference = 0.0, squares = 0.0, df = 0.0;
+  double weight = 0.0;  // of one value's variance in that of the difference
+  for (const auto& [side, sign] : {std::pair{&a, 1.0}, std::pair{&b, -1.0}}) {
+    for (const auto& stratum : *side) {
+      const auto m = moments(stratum);
+      if (!m) {
+        return Undefined{m.because()};
+      }
+      difference += sign * m->mean() / strata;
+      squares += m->squares;
+      df += static_cast<double>(m->count) - 1.0;
+      weight += 1.0 / (static_cast<double>(m->count) * strata * strata);
+    }
+  }
+  if (squares == 0.0) {
+    return Undefined{"the values do not vary within any group"};
+  }
+  const double d = difference / std::sqrt(squares / df);
+  const auto limits = noncentral_t_limits(d / std::sqrt(weight), df, level);
+  if (!limits) {
+    return Undefined{limits.because()};
+  }
+  return EffectSize{d, limits->low * std::sqrt(weight), limits->high * std::sqrt(weight), level};
 }
 
 Defined<EffectSize> hedges_g(std::span<const double> a, std::span<const double> b, double level) {

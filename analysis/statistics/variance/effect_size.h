@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "analysis/statistics/base/defined.h"
 #include "analysis/statistics/variance/anova.h"
@@ -29,6 +30,13 @@ Defined<EffectSize> cohens_d(std::span<const double> a, std::span<const double> 
 /// paired_t_test.
 Defined<EffectSize> cohens_dz(std::span<const double> a, std::span<const double> b,
                               double level = kDifferenceLevel);
+
+/// The difference of stratified_t_test by the standard deviation within strata, pooled over them.
+/// @param b  as many strata as `a`; none: `a` holds differences of pairs.
+/// Undefined where no value varies within its stratum, or one is not finite.
+Defined<EffectSize> stratified_d(const std::vector<std::vector<double>>& a,
+                                 const std::vector<std::vector<double>>& b,
+                                 double level = kDifferenceLevel);
 
 /// Hedges' g: d without its bias. The limits are those of d, as both estimate the same population
 /// value. Undefined as student_t_test, and with one degree of freedom.

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "analysis/statistics/base/p_adjust.h"
 #include "analysis/statistics/design/design_lines.h"
 #include "analysis/statistics/design/wording.h"
@@ -244,7 +246,87 @@ TEST(DesignTests, LevelsAcrossUnequalGroupsAreWeighedAlike) {
   EXPECT_NEAR(test.t->difference, 1.0, 1.2);
   EXPECT_GT(test.t->difference, 0.0);
   EXPECT_LT(test.t->error, 1.0);
-  EXPECT_THAT(test.ranks.because(), HasSubstr("different size"));
+  EXPECT_THAT(test.ranks.because(), HasSubstr("other groups"));
+}
+
+TEST(DesignTests, WhatLiesBetweenOtherGroupsIsNoSpreadOfTheirPeople) {
+  // Two sites that differ by 10 lie across the training: of equally large groups, the square of
+  // d's t is F of the two-way analysis, and what takes people of both sites together says nothing.
+  Made made("sites");
+  for (int i = 0; i < 6; ++i) {
+    made.add(person("A", i), {"trained", "north"}, 11.5);
+    made.add(person("B", i), {"not", "north"}, 10.0);
+    made.add(person("C", i), {"trained", "south"}, 1.5);
+    made.add(person("D", i), {"not", "south"}, 0.0);
+  }
+  AnalysisPlan plan;
+  plan.tests = {{"trained", "not", Tail::kTwoSided}};
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"training", "site"}), plan, {1, "s", 99, 1});
+  const SideTest& test = tests.planned.tests[0];
+  ASSERT_TRUE(test.size);
+  const double t = test.size->value / std::sqrt(4.0 / 6.0 / 4.0);
+  EXPECT_NEAR(t * t, tests.effects[0]->f, 1e-9 * t * t);
+  EXPECT_GT(test.size->value, 1.0);
+  EXPECT_GT(test.size->low, 0.0);
+  for (const std::string& why :
+       {test.ranks.because(), test.permutation.because(), test.bootstrap.because()}) {
+    EXPECT_THAT(why, HasSubstr("other groups"));
+  }
+}
+
+TEST(DesignTests, LevelsThatDifferInOtherFactorsAreNotCompared) {
+  // Speed has no effect, load adds 3; fast and heavy never came together.
+  Made made("missing cell");
+  for (int i = 0; i < 8; ++i) {
+    made.add(person("S", i), {"slow", "light"}, 0.0);
+    made.add(person("S", i), {"slow", "heavy"}, 3.0);
+    made.add(person("S", i), {"fast", "light"}, 0.0);
+  }
+  AnalysisPlan plan;
+  plan.beside.bayes_factors = true;
+  plan.tests = {{"fast", "slow", Tail::kLess}, {"fast, light", "slow, light", Tail::kLess}};
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"speed", "load"}), plan, kNone);
+  const SideTest& levels = tests.planned.tests[0];
+  EXPECT_THAT(levels.t.because(), HasSubstr("'fast' and 'slow' differ in other factors"));
+  EXPECT_THAT(levels.bayes_factor.because(), HasSubstr("differ in other factors"));
+  EXPECT_TRUE(tests.planned.tests[1].t);
+}
+
+TEST(DesignLines, TheRuleOfAStudyDecidesItsTest) {
+  Made made("rule");
+  for (int i = 0; i < 8; ++i) {
+    made.add(person("S", i), {"a"}, 0.0);
+    made.add(person("S", i), {"b"}, 3.0);
+  }
+  AnalysisPlan plan;
+  plan.tests = {{"a", "b", Tail::kLess}};
+  DesignTests tests = design_tests(design_table(made.observations, {"c"}), plan, kNone);
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("significant"));
+  tests.sequential = SequentialResult{plan.tests.front(), {}, 20, {}, SequentialVerdict::kGoOn};
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("a < b: not decided yet"));
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("had been fixed"));
+  tests.sequential->verdict = SequentialVerdict::kUndecided;
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("a < b: not shown"));
+  tests.sequential->verdict = SequentialVerdict::kEffect;
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("a < b: significant"));
+}
+
+TEST(DesignTests, LevelsWithinAnotherAreCompared) {
+  // A gain of guidance is of the trained alone: no gain is shared, and none can be held.
+  Made made("nested");
+  for (int i = 0; i < 5; ++i) {
+    made.add(person("A", i), {"alone", "0"}, 0.0);
+    made.add(person("B", i), {"guided", "1"}, 1.0);
+    made.add(person("C", i), {"guided", "2"}, 1.0);
+  }
+  AnalysisPlan plan;
+  plan.tests = {{"guided", "alone", Tail::kGreater}};
+  const DesignTests tests =
+      design_tests(design_table(made.observations, {"way", "gain"}), plan, kNone);
+  ASSERT_TRUE(tests.planned.tests[0].t);
+  EXPECT_EQ(tests.planned.tests[0].count_a, 10u);
 }
 
 TEST(DesignTests, StrataOfOneAreTheSimpleTests) {
@@ -255,6 +337,10 @@ TEST(DesignTests, StrataOfOneAreTheSimpleTests) {
   EXPECT_NEAR(one->t, welch->t, 1e-12);
   EXPECT_NEAR(one->df, welch->df, 1e-12);
   EXPECT_NEAR(one->p, welch->p, 1e-12);
+  const auto d = cohens_d(a, b), stratum = stratified_d({a}, {b});
+  EXPECT_NEAR(stratum->value, d->value, 1e-12);
+  EXPECT_NEAR(stratum->low, d->low, 1e-9);
+  EXPECT_NEAR(stratum->high, d->high, 1e-9);
 }
 
 TEST(DesignTests, WhoHasBothSidesIsCompared) {

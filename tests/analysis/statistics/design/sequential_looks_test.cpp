@@ -107,7 +107,7 @@ TEST(SequentialLooksTest, WithoutValuesItGoesOnUntilNobodyMayCome) {
             SequentialVerdict::kGoOn);
   const SequentialResult all = sequential_result(study.table, other, {}, study.order, 4);
   EXPECT_EQ(all.verdict, SequentialVerdict::kUndecided);
-  EXPECT_THAT(words_of(all), HasSubstr("not defined, because a condition has no values"));
+  EXPECT_THAT(words_of(all), HasSubstr("not defined, because there are no trials of 'c'"));
 }
 
 /// 700 studies without an effect that are looked at five times.
