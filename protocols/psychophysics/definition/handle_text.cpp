@@ -33,9 +33,20 @@ std::vector<scene::Field> without_reliefs(const std::vector<scene::Field>& field
 /// Friction of less than this swings by less than what counts as an oscillation [N].
 constexpr double kWeakFriction = 1.0;
 
-bool is_weak_friction(const scene::Field& field) {
+/// How hard a surface can be pressed [N].
+double most_press(const std::vector<scene::Field>& fields, const std::string& surface) {
+  const auto found = std::ranges::find(fields, surface, &scene::Field::name);
+  return found != fields.end() ? found->limit : 0.0;
+}
+
+/// On a surface the level of friction is a coefficient.
+bool is_weak_friction(const std::vector<scene::Field>& fields, const scene::Field& field) {
   const auto* friction = std::get_if<scene::FrictionParameters>(&field.kind);
-  return friction != nullptr && friction->static_level < kWeakFriction;
+  if (friction == nullptr) {
+    return false;
+  }
+  const double press = friction->on.empty() ? 1.0 : most_press(fields, friction->on);
+  return std::min(friction->static_level * press, field.limit) < kWeakFriction;
 }
 
 /// How hard a field may push a hand that is at p when it begins [N].
@@ -133,7 +144,7 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
     }
     const scene::Field& field = fields[at];
     const bool felt = acts(named.stage.fields & presented.felt[device], i);
-    if (felt && !is_weak_friction(field)) {
+    if (felt && !is_weak_friction(fields, field)) {
       const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
       load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
       load.damping += bound.damping;
