@@ -9,7 +9,8 @@ namespace haptrial::scene {
 struct StiffnessBound {
   bool passive{false};    // in continuous time, once it is faded in
   double stiffness{0.0};  // K: bound of how fast the force over the place turns against it [N/m]
-  double damping{0.0};    // B: bound of the force over the velocity [N·s/m]
+  double damping{0.0};    // B: bound of the force over the velocity that drives no motion [N·s/m]
+  double driving{0.0};    // D: most force along the velocity over it; < 0: damps all [N·s/m]
 };
 
 /// Facts about a field that checks of a definition and the order of a scene ask for, whatever its

@@ -1,5 +1,6 @@
 #include "core/scene/needed_damping.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,12 +46,13 @@ StiffnessBound stiffness_bound(const std::vector<Field>& fields, std::size_t whi
 }
 
 double needed_damping(const StiffnessBound& field, double rate) noexcept {
-  return 0.5 * field.stiffness / rate + field.damping;
+  return 0.5 * field.stiffness / rate + field.damping + std::max(field.driving, 0.0);
 }
 
 double needed_damping_below(double frequency, const StiffnessBound& field, double rate) noexcept {
-  return 0.5 * field.stiffness / rate -
-         field.damping * std::cos(2.0 * std::numbers::pi * frequency / rate);
+  const double damper = -field.damping * std::cos(2.0 * std::numbers::pi * frequency / rate);
+  return 0.5 * field.stiffness / rate +
+         (field.driving > 0.0 ? std::max(field.driving, damper) : damper);
 }
 
 }  // namespace haptrial::scene

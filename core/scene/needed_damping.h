@@ -12,13 +12,14 @@ namespace haptrial::scene {
 /// velocity; the energy that it gives over time is its purpose.
 StiffnessBound stiffness_bound(const std::vector<Field>& fields, std::size_t which);
 
-/// The damping of device and hand with which a sampled passive field never gives out energy,
-/// whatever the hand does between two ticks (Colgate and Schenkel 1997):
+/// The damping of device and hand with which a sampled field that is passive, or drives motions by
+/// D alone, never gives out energy, whatever the hand does between two ticks (Colgate and Schenkel
+/// 1997):
 ///
-///     b > K T / 2 + B,   T = 1 / rate                                     [N·s/m]
+///     b > K T / 2 + B + max(D, 0),   T = 1 / rate                         [N·s/m]
 ///
 /// Proof for every law of this folder: over a closed way held forces give at most
-/// Σ K |Δx|² / 2 + B |Δx_k-1| |Δx_k| / T, and Σ |Δx|² / T is at most the integral of |v|².
+/// Σ K |Δx|² / 2 + (B + D) |Δx_k-1| |Δx_k| / T, and Σ |Δx|² / T is at most the integral of |v|².
 /// Velocities may be any mean of past differences (a slope over readings, a low-pass).
 /// @param rate  > 0 [Hz]
 double needed_damping(const StiffnessBound& field, double rate) noexcept;
@@ -29,8 +30,8 @@ double needed_damping(const StiffnessBound& field, double rate) noexcept;
 ///     b > K T / 2 - B cos(2 pi frequency T),
 ///
 /// with the velocity as the last difference and B in every direction in which K acts. At 0 Hz this
-/// is the bound of the virtual coupling, K T / 2 < b + B: what `validate` warns about. Negative:
-/// nothing is needed.
+/// is the bound of the virtual coupling, K T / 2 < b + B: what `validate` warns about. A field that
+/// drives motions, D > 0, needs D in place of what its damper helps. Negative: nothing is needed.
 double needed_damping_below(double frequency, const StiffnessBound& field, double rate) noexcept;
 
 }  // namespace haptrial::scene

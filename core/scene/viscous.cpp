@@ -8,22 +8,28 @@
 namespace haptrial::scene {
 namespace {
 
-/// @param matrix  symmetric
-double largest_eigenvalue(const Eigen::Matrix3d& matrix) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
-      .eigenvalues()
-      .maxCoeff();
+using Eigen::Matrix3d;
+
+double spectral_norm(const Matrix3d& matrix) {
+  return std::sqrt(
+      Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix.transpose() * matrix, Eigen::EigenvaluesOnly)
+          .eigenvalues()
+          .maxCoeff());
 }
 
 }  // namespace
 
+/// Directions along which the matrix pushes a motion on are no damper: B is left without them.
 StiffnessBound MatrixViscousParameters::bound() const {
-  const double size = matrix.cwiseAbs().maxCoeff();
-  const double largest = largest_eigenvalue(matrix + matrix.transpose());
-  const bool symmetric = (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= 1e-12 * size;
-  const bool takes = largest <= 1e-12 * size;
-  return {takes && (symmetric || std::isinf(velocity_filter)), 0.0,
-          std::sqrt(largest_eigenvalue(matrix.transpose() * matrix))};
+  const double rounding = 1e-12 * matrix.cwiseAbs().maxCoeff();
+  const bool symmetric = (matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= rounding;
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> along(0.5 * (matrix + matrix.transpose()));
+  const double largest = along.eigenvalues().maxCoeff();
+  const bool takes = largest <= rounding;
+  const Matrix3d driving = along.eigenvectors() * along.eigenvalues().cwiseMax(0.0).asDiagonal() *
+                           along.eigenvectors().transpose();
+  return {takes && (symmetric || std::isinf(velocity_filter)), 0.0, spectral_norm(matrix - driving),
+          std::abs(largest) <= rounding ? 0.0 : largest};
 }
 
 Viscous::Viscous(const ViscousParameters& p, const Setting& setting)

@@ -15,7 +15,7 @@ struct ViscousParameters {
   double damping{5.0};                                              // b >= 0 [N·s/m]
   double velocity_filter{std::numeric_limits<double>::infinity()};  // cut-off f_c > 0 [Hz]
 
-  StiffnessBound bound() const { return {true, 0.0, damping}; }
+  StiffnessBound bound() const { return {true, 0.0, damping, -damping}; }
   FieldTraits traits() const { return {.yields = true}; }
 };
 

@@ -148,6 +148,7 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
       const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
       load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
       load.damping += bound.damping;
+      load.driving += bound.driving;
       const scene::FieldTraits traits = scene::traits_of(field);
       load.mass += traits.mass;
       load.cutoff = std::max(load.cutoff, traits.mass_cutoff);
@@ -168,9 +169,28 @@ control::HandleLoop HandleReport::loop_of(const Load& load) const {
 /// The beginning of a sentence.
 std::string HandleReport::where(const Load& load) const {
   return arms_.size() == 1
-             ? fmt::format("stage {}: its fields add up to {}", load.stage, amount_of(load))
-             : fmt::format("stage {}: its fields on {} add up to {}", load.stage,
-                           arms_[load.device].name, amount_of(load));
+             ? fmt::format("stage {}: its fields", load.stage)
+             : fmt::format("stage {}: its fields on {}", load.stage, arms_[load.device].name);
+}
+
+std::string HandleReport::sum_of(const Load& load) const {
+  return fmt::format("{} add up to {}", where(load), amount_of(load));
+}
+
+std::string HandleReport::damping_text(const Load& load, double damping) const {
+  Load alone;
+  alone.device = load.device;
+  alone.damping = damping;
+  return amount_of(alone);
+}
+
+bool HandleReport::by_fingers(const Load& load) const {
+  return arms_[load.device].part != device::Part::kTip;
+}
+
+/// The heaviest hand, or fingers, that a load may need [kg].
+double HandleReport::heaviest(const Load& load) const {
+  return by_fingers(load) ? control::kHeaviestFingers : control::kHeaviestHand;
 }
 
 /// The guard leaves alone what swings no faster than a hand that trembles. With the hands of most
@@ -189,7 +209,8 @@ void HandleReport::reject_slow_swings(const Load& load, const control::HandleLoo
         "{}; at {:g} Hz, with forces that come {} late, hands of less than {:.2f} kg oscillate "
         "with them at {:.1f} Hz, which cannot be told from a tremor; allowed: less of it, or a "
         "faster loop",
-        where(load), d_.rate, control::ticks_in_words(loop.force_delay), load.lightest, frequency));
+        sum_of(load), d_.rate, control::ticks_in_words(loop.force_delay), load.lightest,
+        frequency));
   }
 }
 
@@ -204,14 +225,13 @@ void HandleReport::judge(Load& load) const {
                                                         loop.velocity_window, loop.force_delay});
   };
   load.lightest = control::lightest_calm_hand(gains, loop);
-  const bool by_fingers = arms_[load.device].part != device::Part::kTip;
-  const double heaviest = by_fingers ? control::kHeaviestFingers : control::kHeaviestHand;
-  if (load.lightest > heaviest || !mass_carried_by(heaviest)) {
-    throw InputError(fmt::format(
-        "{}; no {} of up to {:g} kg {} that at {:g} Hz, with forces that come {} late; "
-        "allowed: less of it, or a faster loop",
-        where(load), by_fingers ? "fingers" : "hand", heaviest, by_fingers ? "carry" : "carries",
-        d_.rate, control::ticks_in_words(loop.force_delay)));
+  if (load.lightest > heaviest(load) || !mass_carried_by(heaviest(load))) {
+    throw InputError(
+        fmt::format("{}; no {} of up to {:g} kg {} that at {:g} Hz, with forces that come {} late; "
+                    "allowed: less of it, or a faster loop",
+                    sum_of(load), by_fingers(load) ? "fingers" : "hand", heaviest(load),
+                    by_fingers(load) ? "carry" : "carries", d_.rate,
+                    control::ticks_in_words(loop.force_delay)));
   }
   reject_slow_swings(load, loop);
   constexpr double kStep = 0.01;  // [kg]
@@ -248,15 +268,34 @@ std::string HandleReport::amount_of(const Load& load) const {
   return fmt::format("{}", fmt::join(parts, " and "));
 }
 
-void HandleReport::keep(const Load& load) {
-  const auto said = std::find_if(worst_.begin(), worst_.end(), [&](const Load& other) {
+void HandleReport::keep(const Load& load, double Load::*demand, std::vector<Load>& kept) {
+  const auto said = std::ranges::find_if(kept, [&](const Load& other) {
     return other.stage == load.stage && other.device == load.device;
   });
-  if (said == worst_.end()) {
-    worst_.push_back(load);
-  } else if (load.lightest > said->lightest) {
+  if (said == kept.end()) {
+    kept.push_back(load);
+  } else if (load.*demand > (*said).*demand) {
     *said = load;
   }
+}
+
+/// The guard does not see it: the force follows the hand's own movement, however slow.
+/// @throws InputError if no hand damps as much
+void HandleReport::note_driving(const Load& load) {
+  constexpr double kHardly = 0.1;  // [N·s/m]
+  if (load.driving < kHardly) {
+    return;
+  }
+  const double most = control::held_by_hand(heaviest(load)).damping;
+  if (load.driving > most) {
+    throw InputError(fmt::format(
+        "{} push movements on with up to {}, and {} of up to {:g} kg damp no more than {}, so that "
+        "they swing up by themselves; allowed: less of it; the matrix of a damper is negative, as "
+        "f = B v",
+        where(load), damping_text(load, load.driving), by_fingers(load) ? "fingers" : "hands",
+        heaviest(load), damping_text(load, most)));
+  }
+  keep(load, &Load::driving, driving_);
 }
 
 void HandleReport::note_stiffest(const Load& load) {
@@ -271,6 +310,7 @@ void HandleReport::note_stiffest(const Load& load) {
 
 void HandleReport::add(Load load) {
   note_stiffest(load);
+  note_driving(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
     return;
   }
@@ -286,7 +326,7 @@ void HandleReport::add(Load load) {
     load.own_hand = same->own_hand;
   }
   if (load.lightest > 0.0 || !load.own_hand) {
-    keep(load);
+    keep(load, &Load::lightest, worst_);
   }
 }
 
@@ -333,13 +373,19 @@ HandleText HandleReport::words() const {
     words.lines.push_back(
         fmt::format("{}, which hands of {:.2f} kg or more carry; for lighter ones haptrial reduces "
                     "them{}",
-                    where(load), load.lightest, left_on_bare_handle(load)));
+                    sum_of(load), load.lightest, left_on_bare_handle(load)));
     if (!load.own_hand) {
       words.warnings.push_back(fmt::format(
           "{}, which only hands of {:.2f} kg or more carry at {:g} Hz; the hand of [hand] has {:g} "
           "kg, so that they are reduced in most trials",
-          where(load), load.lightest, d_.rate, d_.hand.hand_mass));
+          sum_of(load), load.lightest, d_.rate, d_.hand.hand_mass));
     }
+  }
+  for (const Load& load : driving_) {
+    words.warnings.push_back(fmt::format(
+        "{} push movements on with up to {}: hands that damp less swing up by themselves (that of "
+        "[hand] damps {}), and a handle that nobody holds runs away",
+        where(load), damping_text(load, load.driving), damping_text(load, d_.hand.damping)));
   }
   for (const std::string& warning : certificate_warnings(d_, felt_)) {
     words.warnings.push_back(warning);

@@ -38,18 +38,25 @@ class HandleReport {
     std::size_t device{0};
     double stiffness{0.0};  // [N/m]
     double damping{0.0};    // [N·s/m]
+    double driving{0.0};    // force along the hand's way over its velocity, at most [N·s/m]
     double mass{0.0};       // virtual [kg]
     double cutoff{0.0};     // of its acceleration [Hz]
     double lightest{0.0};   // hand that carries it [kg]
     bool own_hand{true};    // that of [hand] does
   };
+  /// Keeps the largest demand of each stage and device.
+  static void keep(const Load& load, double Load::*demand, std::vector<Load>& kept);
   Load load_of(const Presented& presented, std::size_t stage, std::size_t device) const;
   void add(Load load);
   control::HandleLoop loop_of(const Load& load) const;
   std::string where(const Load& load) const;
+  std::string sum_of(const Load& load) const;
+  std::string damping_text(const Load& load, double damping) const;
+  bool by_fingers(const Load& load) const;
+  double heaviest(const Load& load) const;
   void reject_slow_swings(const Load& load, const control::HandleLoop& loop) const;
   void judge(Load& load) const;
-  void keep(const Load& load);
+  void note_driving(const Load& load);
   void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;
   std::string left_on_bare_handle(const Load& load) const;
@@ -58,6 +65,7 @@ class HandleReport {
   std::vector<DeviceArm> arms_;
   std::vector<Load> judged_;        // each sum once, whatever the stage
   std::vector<Load> worst_;         // (stages that some hand does not carry)
+  std::vector<Load> driving_;       // (stages that push a hand along its way)
   std::vector<std::string> begin_;  // what begins around the hand
   bool looked_{false};              // at what begins
   FeltParts felt_;

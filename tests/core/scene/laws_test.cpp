@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -263,6 +264,42 @@ TEST(NeededDampingTest, FieldsOfTimeAndLateAccelerationAreNotPassive) {
   curl.velocity_filter = INFINITY;
   EXPECT_TRUE(stiffness_bound({test::field("curl", curl)}, 0).passive) << "turns the hand, no more";
   EXPECT_NEAR(stiffness_bound({test::field("curl", curl)}, 0).damping, 13.0, 1e-12);
+}
+
+// Along its eigenvectors a matrix of 3 and -5 N·s/m pushes on and damps; a curl does neither.
+TEST(NeededDampingTest, AMatrixIsPartedIntoWhatDrivesAndWhatDamps) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()).matrix();
+  MatrixViscousParameters saddle;
+  saddle.matrix = turn * Vector3d(3.0, -5.0, 0.0).asDiagonal() * turn.transpose();
+  const StiffnessBound bound = stiffness_bound({test::field("saddle", saddle)}, 0);
+  EXPECT_FALSE(bound.passive);
+  EXPECT_NEAR(bound.driving, 3.0, 1e-12);
+  EXPECT_NEAR(bound.damping, 5.0, 1e-12);
+  EXPECT_NEAR(needed_damping_below(0.0, bound, kRate), 3.0, 1e-12) << "for a slow hand";
+  MatrixViscousParameters damper;
+  damper.matrix = Vector3d(-8.0, -5.0, -1.0).asDiagonal();
+  EXPECT_NEAR(stiffness_bound({test::field("oil", damper)}, 0).driving, -1.0, 1e-12);
+  MatrixViscousParameters curl;
+  curl.matrix << 0.0, 0.0, 13.0, 0.0, 0.0, 0.0, -13.0, 0.0, 0.0;
+  EXPECT_EQ(stiffness_bound({test::field("curl", curl)}, 0).driving, 0.0);
+}
+
+// The law of the needed damping holds for fields that drive motions, too, and D is needed.
+TEST(NeededDampingTest, HoldsForAMatrixThatPushesMotionsOn) {
+  MatrixViscousParameters push;
+  push.matrix = Vector3d(4.0, -2.0, 1.0).asDiagonal();
+  push.velocity_filter = INFINITY;
+  const std::vector<Field> fields{test::field("push", push, 1e3)};
+  const double needed = needed_damping(stiffness_bound(fields, 0), kRate);
+  double most = -INFINITY;
+  for (const Motion& motion : every_motion("push")) {
+    Scene scene(fields, kRate);
+    scene.switch_to(Scene::kAll);
+    const GivenEnergy given = round_three(law_of(scene), motion);
+    ASSERT_LE(given.energy, needed * given.travel + 1e-9);
+    most = std::max(most, given.energy / given.travel);
+  }
+  EXPECT_GT(most, 0.0);
 }
 
 }  // namespace
