@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 
 #include "core/control/pd_controller.h"
 #include "core/scene/field_state.h"
@@ -18,8 +17,6 @@ struct SpringParameters {
 
   StiffnessBound bound() const { return {true, gains.stiffness, gains.damping}; }
   FieldTraits traits() const { return {.leads_to = to}; }
-  /// How far a hand at p is pulled out of place [m].
-  double stretch_at(const Eigen::Vector3d& p) const { return (p - to).norm(); }
 };
 
 /// Spring to the straight line through two points, endless: f = sat(-k P (p - from) - b P v, limit)
@@ -57,9 +54,6 @@ struct PlaneParameters {
 
   StiffnessBound bound() const { return {true, gains.stiffness, gains.damping}; }
   FieldTraits traits() const { return {}; }
-  double stretch_at(const Eigen::Vector3d& p) const {
-    return std::abs(normal.normalized().dot(p - through));
-  }
 };
 
 /// A spring and damper along some directions, which P projects on, and freedom along the others:

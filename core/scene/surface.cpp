@@ -26,11 +26,6 @@ FieldTraits SurfaceParameters::traits() const {
   return {.surface = true, .closes_in = closes_in, .yields = true};
 }
 
-double SurfaceParameters::stretch_at(const Vector3d& p) const {
-  const double outside = PlacedShape(shape).distance(p).distance;
-  return std::max(0.0, felt_from_inside ? outside : -outside);
-}
-
 Surface::Surface(const SurfaceParameters& parameters, const Setting& setting)
     : shape_(parameters.shape),
       inside_(parameters.felt_from_inside),

@@ -18,8 +18,6 @@ struct SurfaceParameters {
 
   StiffnessBound bound() const;
   FieldTraits traits() const;
-  /// How deep a hand at p is behind the surface [m].
-  double stretch_at(const Eigen::Vector3d& p) const;
 };
 
 /// The sum of the reliefs on a surface at a place.

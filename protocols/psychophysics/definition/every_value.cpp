@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/scene/scene.h"
+#include "protocols/psychophysics/definition/beginning_words.h"
 #include "protocols/psychophysics/definition/lead_words.h"
 #include "protocols/psychophysics/definition/picture_words.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -446,6 +447,21 @@ HandleText EveryValue::check() {
   return words;
 }
 
+/// Bodies at rest that may begin where the hand is; those that move are not felt from inside.
+std::vector<std::string> beginnings_of_bodies(const TrialsDefinition& d, Presented presented) {
+  std::uint64_t resting = 0;
+  for (std::size_t i = 0; i < presented.fields.size(); ++i) {
+    const auto* body = std::get_if<scene::DeformableObjectParameters>(&presented.fields[i].kind);
+    resting |= std::uint64_t{body != nullptr && !body->moves()} << i;
+  }
+  for (NamedStage& stage : presented.stages) {
+    stage.stage.fields &= resting;
+  }
+  BeginningReport report(d);
+  report.add(presented);
+  return report.lines();
+}
+
 }  // namespace
 
 std::vector<std::string> costs_of_bodies(const TrialsDefinition& d) {
@@ -464,7 +480,11 @@ std::vector<std::string> costs_of_bodies(const TrialsDefinition& d) {
   Presented presented = read_presented(root, *names, d, nullptr);
   root.check();
   prepare_bodies(presented.fields, d.rate);
-  return words_of_bodies(presented.fields, d.rate, d.hand.damping);
+  std::vector<std::string> words = words_of_bodies(presented.fields, d.rate, d.hand.damping);
+  for (const std::string& line : beginnings_of_bodies(d, presented)) {
+    words.push_back(line);
+  }
+  return words;
 }
 
 HandleText check_every_value(TrialsDefinition& d) { return EveryValue(d).check(); }

@@ -5,20 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/control/loop_margin.h"
 #include "core/scene/needed_damping.h"
-#include "core/scene/scene.h"
 #include "protocols/definition/handle_loop.h"
 #include "protocols/psychophysics/definition/presented.h"
 
 namespace haptrial::protocols {
 namespace {
-
-using Eigen::Vector3d;
 
 bool acts(std::uint64_t mask, std::size_t field) { return (mask >> field & 1U) != 0; }
 
@@ -49,86 +44,10 @@ bool is_weak_friction(const std::vector<scene::Field>& fields, const scene::Fiel
   return std::min(friction->static_level * press, field.limit) < kWeakFriction;
 }
 
-/// How hard a field may push a hand that is at p when it begins [N].
-double push_at(const scene::Field& field, const Vector3d& p) {
-  return std::visit(
-      [&](const auto& kind) {
-        if constexpr (requires { kind.stretch_at(p); }) {
-          return std::min(field.limit, kind.gains.stiffness * kind.stretch_at(p));
-        } else {
-          return 0.0;
-        }
-      },
-      field.kind);
-}
-
-/// Places of a hand when a stage begins: in the regions that the stage before waits for, or
-/// anywhere in the workspace.
-std::vector<Vector3d> places_before(const Presented& presented, std::size_t stage, double reach) {
-  constexpr int kSteps = 20;  // to each side
-  std::vector<scene::PlacedShape> regions;
-  if (stage > 0) {
-    const std::uint64_t inside = presented.stages[stage - 1].stage.until.inside;
-    for (std::size_t i = 0; i < presented.regions.size(); ++i) {
-      if (acts(inside, i)) {
-        regions.emplace_back(presented.regions[i].shape);
-      }
-    }
-  }
-  std::vector<Vector3d> places;
-  for (int x = -kSteps; x <= kSteps; ++x) {
-    for (int y = -kSteps; y <= kSteps; ++y) {
-      for (int z = -kSteps; z <= kSteps; ++z) {
-        const Vector3d p = reach / kSteps * Vector3d(x, y, z);
-        const bool in = std::all_of(regions.begin(), regions.end(),
-                                    [&](const auto& region) { return region.contains(p); });
-        if (in && p.norm() <= reach) {
-          places.push_back(p);
-        }
-      }
-    }
-  }
-  return places;
-}
-
-/// A sentence for each field that may begin where the hand is.
-std::vector<std::string> words_of_beginnings(const Presented& presented, double reach) {
-  constexpr double kHardly = 1.0;  // [N]
-  std::vector<std::string> words;
-  std::uint64_t before = 0;
-  for (std::size_t stage = 0; stage < presented.stages.size(); ++stage) {
-    const std::uint64_t mask = presented.stages[stage].stage.fields;
-    std::optional<std::vector<Vector3d>> places;
-    for (std::size_t i = 0; i < presented.fields.size(); ++i) {
-      const scene::Field& field = presented.fields[i];
-      const bool begins = acts(mask, i) && !acts(before, i);
-      if (!begins) {
-        continue;
-      }
-      if (!places) {
-        places = places_before(presented, stage, reach);
-      }
-      double push = 0.0;
-      for (const Vector3d& p : *places) {
-        push = std::max(push, push_at(field, p));
-      }
-      if (push > kHardly) {
-        words.push_back(fmt::format(
-            "stage {}: {}.{} may begin where the hand is, and then pushes it with up to {:.1f} N, "
-            "which come within {:g} s",
-            presented.stages[stage].name, scene::traits_of(field).object ? "objects" : "fields",
-            field.name, push, std::max(field.fade_in, 0.05)));
-      }
-    }
-    before = mask;
-  }
-  return words;
-}
-
 }  // namespace
 
 HandleReport::HandleReport(const TrialsDefinition& definition)
-    : d_(definition), arms_(definition.arms()) {}
+    : d_(definition), arms_(definition.arms()), beginnings_(definition) {}
 
 HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t stage,
                                          std::size_t device) const {
@@ -338,9 +257,7 @@ void HandleReport::add(const Presented& presented) {
       add(load_of(presented, stage, device));
     }
   }
-  if (!std::exchange(looked_, true)) {
-    begin_ = words_of_beginnings(presented, d_.envelope.workspace_radius);
-  }
+  beginnings_.add(presented);
 }
 
 /// The end of a sentence; empty where a handle that nobody holds carries all of it, if barely.
@@ -368,7 +285,7 @@ std::string HandleReport::left_on_bare_handle(const Load& load) const {
 
 HandleText HandleReport::words() const {
   HandleText words;
-  words.lines = begin_;
+  words.lines = beginnings_.lines();
   for (const Load& load : worst_) {
     words.lines.push_back(
         fmt::format("{}, which hands of {:.2f} kg or more carry; for lighter ones haptrial reduces "

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "protocols/definition/device_arm.h"
+#include "protocols/psychophysics/definition/beginning_words.h"
 #include "protocols/psychophysics/definition/certificate_words.h"
 
 namespace haptrial::control {
@@ -63,11 +64,10 @@ class HandleReport {
 
   const TrialsDefinition& d_;
   std::vector<DeviceArm> arms_;
-  std::vector<Load> judged_;        // each sum once, whatever the stage
-  std::vector<Load> worst_;         // (stages that some hand does not carry)
-  std::vector<Load> driving_;       // (stages that push a hand along its way)
-  std::vector<std::string> begin_;  // what begins around the hand
-  bool looked_{false};              // at what begins
+  std::vector<Load> judged_;   // each sum once, whatever the stage
+  std::vector<Load> worst_;    // (stages that some hand does not carry)
+  std::vector<Load> driving_;  // (stages that push a hand along its way)
+  BeginningReport beginnings_;
   FeltParts felt_;
 };
 

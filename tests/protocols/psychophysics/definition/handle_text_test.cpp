@@ -8,6 +8,7 @@
 
 #include "protocols/psychophysics/definition/every_value.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
+#include "tests/support/replaced.h"
 
 namespace haptrial::protocols::handle_text_test {
 namespace {
@@ -112,6 +113,98 @@ TEST(HandleTextTest, AMatrixThatPushesIsNoDamperOfAWall) {
         .lines;
   };
   EXPECT_EQ(beside(R"("wall", "medium")"), beside(R"("wall")"));
+}
+
+/// A study whose field or object f begins in the stage "feel", after a stage "wait".
+/// @param until  ends the wait
+std::string begun(const std::string& f, const std::string& until = "until = { time = 1.0 }") {
+  const std::string stages = "[[stages]]\nname = \"wait\"\n" + until + "\n[[stages]]\n";
+  return test::replaced(felt(R"("f")", f), "[[stages]]\n", stages);
+}
+
+std::vector<std::string> beginnings(const std::string& text) {
+  std::vector<std::string> lines = words_of(text).lines;
+  std::erase_if(lines, [](const std::string& line) {
+    return line.find("may begin where the hand is") == std::string::npos;
+  });
+  return lines;
+}
+
+std::string push_of(const char* force) {
+  return fmt::format("f may begin where the hand is, and then pushes it with up to {} N", force);
+}
+
+const std::string kSpring = "stiffness = 1000.0\ndamping = 5.0\nlimit = 7.5\n";
+
+TEST(HandleTextTest, WhateverMayBeginAroundTheHandIsNamed) {
+  for (const char* field : {
+           "type = \"spring\"\nto = [0.05, 0.0, 0.0]\n",
+           "type = \"plane\"\nthrough = [0.0, 0.05, 0.0]\nnormal = [0.0, 1.0, 0.0]\n",
+           "type = \"channel\"\naxes = [\"x\"]\nthrough = [0.0, 0.05, 0.0]\n",
+           "type = \"channel\"\nfrom = [0.0, 0.05, 0.0]\nto = [0.1, 0.05, 0.0]\n",
+           "type = \"curve\"\npoints = [[0.05, 0.0, 0.0], [0.05, 0.0, 0.02]]\n",
+           "type = \"path\"\npoints = [[0.05, 0.0, 0.0], [0.05, 0.0, 0.02]]\nduration = 2.0\n",
+           "type = \"box\"\ncentre = [0.0, 0.0, 0.0]\nsize = [0.06, 0.06, 0.06]\n",
+       }) {
+    EXPECT_THAT(beginnings(begun("[fields.f]\n" + std::string(field) + kSpring)),
+                ElementsAre(AllOf(HasSubstr("stage feel: fields." + push_of("7.5")),
+                                  HasSubstr("which come within 0.05 s"))))
+        << field;
+  }
+  EXPECT_THAT(beginnings(begun("[objects.f]\nshape = \"sphere\"\nradius = 0.03\n"
+                               "centre = [0.0, -0.005, 0.0]\n" +
+                               kSpring)),
+              ElementsAre(HasSubstr("stage feel: objects." + push_of("7.5"))));
+  // The force of these is what the definition asks for, or begins where the hand is.
+  for (const char* meant : {"type = \"constant\"\nforce = [2.0, 0.0, 0.0]\n",
+                            "type = \"minimum_jerk\"\nto = [0.05, 0.0, 0.0]\nduration = 1.0\n"
+                            "stiffness = 300.0\ndamping = 5.0\n",
+                            "type = \"vibration\"\ndirection = [1.0, 0.0, 0.0]\namplitude = "
+                            "2.0\nfrequency = 40.0\nphase = 1.0\n"}) {
+    EXPECT_THAT(beginnings(begun("[fields.f]\n" + std::string(meant))), IsEmpty()) << meant;
+  }
+}
+
+// In the middle of a box of 6 cm a hand is 3 cm deep: 100 N/m give 3 N, and 30 N more than the
+// device.
+TEST(HandleTextTest, APushIsThatOfTheDeepestPlaceAndOfTheDevice) {
+  const auto box = [](const char* stiffness) {
+    return std::string(
+               "[objects.f]\nshape = \"box\"\nsize = [0.06, 0.06, 0.06]\n"
+               "damping = 5.0\nlimit = 40.0\nstiffness = ") +
+           stiffness + "\n";
+  };
+  EXPECT_THAT(beginnings(begun(box("100.0"))), ElementsAre(HasSubstr(push_of("3"))));
+  EXPECT_THAT(beginnings(begun(box("1000.0"))), ElementsAre(HasSubstr(push_of("8"))));
+}
+
+// The wall begins 5 cm below the hand, or 3 cm above a hand at the origin.
+TEST(HandleTextTest, TheHardestPushOfAllLevelsIsNamed) {
+  const auto wall = [](const char* levels) {
+    return begun(
+        "[fields.f]\ntype = \"wall\"\npoint = [0.0, \"$h\", 0.0]\n"
+        "normal = [0.0, 1.0, 0.0]\n" +
+        kSpring + "[factors]\nh = [" + levels + "]\n");
+  };
+  EXPECT_THAT(beginnings(wall("-0.2, 0.03")), ElementsAre(HasSubstr(push_of("7.5"))));
+  EXPECT_EQ(beginnings(wall("-0.2, 0.03")), beginnings(wall("0.03, -0.2")));
+}
+
+// A hand that waits in a ball of 3 mm is at most that far from its middle, unless the wait may end
+// without it, or the ball is the cursor's.
+TEST(HandleTextTest, AHandIsWhereTheStageBeforeWaitsForIt) {
+  const std::string spring =
+      "[fields.f]\ntype = \"spring\"\nto = [0.013, 0.002, 0.0]\nstiffness = 1000.0\n"
+      "damping = 5.0\nlimit = 7.5\n[regions.start]\ntype = \"sphere\"\ncentre = [0.013, 0.002, "
+      "0.0]\n"
+      "radius = 0.003\n";
+  const std::string until = "until = { inside = \"start\" }\ntimeout = { after = 5.0, then = ";
+  EXPECT_THAT(beginnings(begun(spring, until + "\"abort\" }")),
+              ElementsAre(HasSubstr(push_of("3"))));
+  EXPECT_THAT(beginnings(begun(spring, until + "\"go on\" }")),
+              ElementsAre(HasSubstr(push_of("7.5"))));
+  EXPECT_THAT(beginnings(begun(spring + "of = \"cursor\"\n[cursor]\n", until + "\"abort\" }")),
+              ElementsAre(HasSubstr(push_of("7.5"))));
 }
 
 }  // namespace
