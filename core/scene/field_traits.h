@@ -27,10 +27,13 @@ struct FieldTraits {
   std::optional<Eigen::Vector3d> leads_to{};  // a hand that does nothing, in W [m]
 };
 
-/// How much the reliefs on a surface may steepen its force: sums of bounds of each.
+/// How much the reliefs on a surface may steepen its force: sums of bounds of each. The usual ones
+/// are those of ridges, and root mean squares of what is rough at random.
 struct ReliefBound {
-  double slope{0.0};      // |∇h|
-  double curvature{0.0};  // of the second derivative of h [1/m]
+  double slope{0.0};            // |∇h|
+  double curvature{0.0};        // of the second derivative of h [1/m]
+  double usual_slope{0.0};      // |∇h|
+  double usual_curvature{0.0};  // [1/m]
 };
 
 }  // namespace haptrial::scene

@@ -5,7 +5,6 @@
 #include <numbers>
 
 namespace haptrial::scene {
-namespace {
 
 ReliefBound reliefs_on(const std::vector<Field>& fields, const Field& surface) {
   ReliefBound sum;
@@ -19,14 +18,14 @@ ReliefBound reliefs_on(const std::vector<Field>& fields, const Field& surface) {
             const ReliefBound own = p.relief_bound();
             sum.slope += own.slope;
             sum.curvature += own.curvature;
+            sum.usual_slope += own.usual_slope;
+            sum.usual_curvature += own.usual_curvature;
           }
         },
         field.kind);
   }
   return sum;
 }
-
-}  // namespace
 
 /// A surface stores phi(e) with e = depth + h: its second derivative is at most k |g|² along g, and
 /// phi' <= limit if h curves. A surface that closes in around the hand adds k at most.

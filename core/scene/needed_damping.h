@@ -12,6 +12,9 @@ namespace haptrial::scene {
 /// velocity; the energy that it gives over time is its purpose.
 StiffnessBound stiffness_bound(const std::vector<Field>& fields, std::size_t which);
 
+/// The sum of the bounds of the reliefs that lie on a surface; zero of any other field.
+ReliefBound reliefs_on(const std::vector<Field>& fields, const Field& surface);
+
 /// The damping of device and hand with which a sampled field that is passive, or drives motions by
 /// D alone, never gives out energy, whatever the hand does between two ticks (Colgate and Schenkel
 /// 1997):

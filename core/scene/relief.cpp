@@ -32,12 +32,20 @@ void lay_height_on(double height, const Vector3d& slope, double weight, const Bo
 
 ReliefBound GratingParameters::relief_bound() const {
   const Grating law(*this, {});
-  return {law.steepest(), law.most_curved()};
+  return {law.steepest(), law.most_curved(), law.steepest(), law.most_curved()};
 }
 
+/// The band is filled evenly: <w²> and <w⁴> are its means. The crests of all waves hardly ever
+/// meet.
 ReliefBound TextureParameters::relief_bound() const {
   const Texture law(*this, {});
-  return {law.steepest(), law.most_curved()};
+  const auto mean_power = [&](double power) {
+    return std::pow(kTwoPi, power) *
+           (std::pow(highest, power + 1.0) - std::pow(lowest, power + 1.0)) /
+           ((power + 1.0) * (highest - lowest));
+  };
+  return {law.steepest(), law.most_curved(), roughness * std::sqrt(mean_power(2.0)),
+          roughness * std::sqrt(mean_power(4.0))};
 }
 
 Grating::Grating(const GratingParameters& p, const Setting&)

@@ -17,16 +17,18 @@ namespace {
 
 bool acts(std::uint64_t mask, std::size_t field) { return (mask >> field & 1U) != 0; }
 
-/// Reliefs are left out: a hand that rests on one place does not feel how steep they are.
-std::vector<scene::Field> without_reliefs(const std::vector<scene::Field>& fields) {
-  std::vector<scene::Field> rest;
-  std::copy_if(fields.begin(), fields.end(), std::back_inserter(rest),
-               [](const scene::Field& field) { return !scene::traits_of(field).relief; });
-  return rest;
+std::vector<scene::Field> those_of(std::uint64_t mask, const std::vector<scene::Field>& fields) {
+  std::vector<scene::Field> those;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (acts(mask, i)) {
+      those.push_back(fields[i]);
+    }
+  }
+  return those;
 }
 
-/// Friction of less than this swings by less than what counts as an oscillation [N].
-constexpr double kWeakFriction = 1.0;
+/// Forces of less than this swing by less than what counts as an oscillation [N].
+constexpr double kWeak = 1.0;
 
 /// How hard a surface can be pressed [N].
 double most_press(const std::vector<scene::Field>& fields, const std::string& surface) {
@@ -41,7 +43,40 @@ bool is_weak_friction(const std::vector<scene::Field>& fields, const scene::Fiel
     return false;
   }
   const double press = friction->on.empty() ? 1.0 : most_press(fields, friction->on);
-  return std::min(friction->static_level * press, field.limit) < kWeakFriction;
+  return std::min(friction->static_level * press, field.limit) < kWeak;
+}
+
+/// The press of a hand that feels how rough a surface is [N].
+constexpr double kPress = 3.0;
+
+/// Ridges on a surface as a hand that rests on them feels them.
+struct Ridges {
+  double slope{0.0};  // s
+  double hold{0.0};   // F c, with which a groove holds the hand [N/m]
+
+  bool felt() const { return hold > 0.0; }
+};
+
+/// @param height  share of the ridges' own
+Ridges ridges_on(const std::vector<scene::Field>& fields, const scene::Field& surface,
+                 double height) {
+  const scene::ReliefBound reliefs = scene::reliefs_on(fields, surface);
+  const double slope = height * reliefs.usual_slope;
+  const double press = std::min(kPress, surface.limit / (1.0 + height * reliefs.slope));
+  return press * slope < kWeak ? Ridges{} : Ridges{slope, press * height * reliefs.usual_curvature};
+}
+
+/// Bound on a field for a hand that rests on it. The energy phi(e) of a surface, e = depth + h, has
+/// the second derivative k g gᵀ + F h'' with g = n - ∇h, so that
+///
+///     K = k (1 + s²) + F c,   B = b (1 + s²).
+scene::StiffnessBound bound_at_rest(const scene::Field& field, const Ridges& ridges) {
+  scene::StiffnessBound bound =
+      std::visit([](const auto& kind) { return kind.bound(); }, field.kind);
+  const double lean = 1.0 + ridges.slope * ridges.slope;
+  bound.stiffness = lean * bound.stiffness + ridges.hold;
+  bound.damping *= lean;
+  return bound;
 }
 
 }  // namespace
@@ -50,29 +85,26 @@ HandleReport::HandleReport(const TrialsDefinition& definition)
     : d_(definition), arms_(definition.arms()), beginnings_(definition) {}
 
 HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t stage,
-                                         std::size_t device) const {
+                                         std::size_t device, double height) const {
   const NamedStage& named = presented.stages[stage];
-  const std::vector<scene::Field> fields = without_reliefs(presented.fields);
+  const std::vector<scene::Field> fields =
+      those_of(named.stage.fields & presented.felt[device], presented.fields);
   Load load;
   load.stage = named.name;
   load.device = device;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < presented.fields.size(); ++i) {
-    if (scene::traits_of(presented.fields[i]).relief) {
+  for (const scene::Field& field : fields) {
+    if (is_weak_friction(fields, field)) {
       continue;
     }
-    const scene::Field& field = fields[at];
-    const bool felt = acts(named.stage.fields & presented.felt[device], i);
-    if (felt && !is_weak_friction(fields, field)) {
-      const scene::StiffnessBound bound = scene::stiffness_bound(fields, at);
-      load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
-      load.damping += bound.damping;
-      load.driving += bound.driving;
-      const scene::FieldTraits traits = scene::traits_of(field);
-      load.mass += traits.mass;
-      load.cutoff = std::max(load.cutoff, traits.mass_cutoff);
-    }
-    ++at;
+    const Ridges ridges = ridges_on(fields, field, height);
+    const scene::StiffnessBound bound = bound_at_rest(field, ridges);
+    load.ridged = load.ridged || ridges.felt();
+    load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
+    load.damping += bound.damping;
+    load.driving += bound.driving;
+    const scene::FieldTraits traits = scene::traits_of(field);
+    load.mass += traits.mass;
+    load.cutoff = std::max(load.cutoff, traits.mass_cutoff);
   }
   return load;
 }
@@ -93,7 +125,8 @@ std::string HandleReport::where(const Load& load) const {
 }
 
 std::string HandleReport::sum_of(const Load& load) const {
-  return fmt::format("{} add up to {}", where(load), amount_of(load));
+  return fmt::format("{}{} add up to {}", where(load), load.ridged ? " and the ridges on them" : "",
+                     amount_of(load));
 }
 
 std::string HandleReport::damping_text(const Load& load, double damping) const {
@@ -134,7 +167,7 @@ void HandleReport::reject_slow_swings(const Load& load, const control::HandleLoo
 }
 
 /// @throws InputError if no hand carries it, or one swings with it as slowly as a tremor
-void HandleReport::judge(Load& load) const {
+void HandleReport::judge(Load& load, const LoadOf& of_height) const {
   const control::HandleLoop loop = loop_of(load);
   const control::PdGains gains{load.stiffness, load.damping};
   const auto mass_carried_by = [&](double hand) {
@@ -145,12 +178,13 @@ void HandleReport::judge(Load& load) const {
   };
   load.lightest = control::lightest_calm_hand(gains, loop);
   if (load.lightest > heaviest(load) || !mass_carried_by(heaviest(load))) {
-    throw InputError(
-        fmt::format("{}; no {} of up to {:g} kg {} that at {:g} Hz, with forces that come {} late; "
-                    "allowed: less of it, or a faster loop",
-                    sum_of(load), by_fingers(load) ? "fingers" : "hand", heaviest(load),
-                    by_fingers(load) ? "carry" : "carries", d_.rate,
-                    control::ticks_in_words(loop.force_delay)));
+    const std::string lower = lower_ridges(load, of_height, control::held_by_hand(heaviest(load)));
+    throw InputError(fmt::format(
+        "{}; no {} of up to {:g} kg {} that at {:g} Hz, with forces that come {} late; "
+        "allowed: less of it, or a faster loop{}{}",
+        sum_of(load), by_fingers(load) ? "fingers" : "hand", heaviest(load),
+        by_fingers(load) ? "carry" : "carries", d_.rate, control::ticks_in_words(loop.force_delay),
+        lower.empty() ? "" : ", or ", lower));
   }
   reject_slow_swings(load, loop);
   constexpr double kStep = 0.01;  // [kg]
@@ -159,6 +193,26 @@ void HandleReport::judge(Load& load) const {
   }
   const control::HeldBy own{d_.hand.hand_mass, d_.hand.damping, d_.hand.stiffness};
   load.own_hand = control::is_calm(gains, loop, own) && mass_carried_by(d_.hand.hand_mass);
+  load.lower = load.own_hand ? "" : lower_ridges(load, of_height, own);
+}
+
+/// How high ridges may be for a hand; empty if not even flat fields are for it.
+std::string HandleReport::lower_ridges(const Load& load, const LoadOf& of_height,
+                                       const control::HeldBy& hand) const {
+  const control::HandleLoop loop = loop_of(load);
+  const auto carried = [&](double height) {
+    const Load lower = of_height(height);
+    return control::is_calm({lower.stiffness, lower.damping}, loop, hand);
+  };
+  if (!load.ridged || !carried(0.0)) {
+    return "";
+  }
+  int low = 0, high = 100;  // of a hundred
+  while (high - low > 1) {
+    const int middle = (low + high) / 2;
+    (carried(0.01 * middle) ? low : high) = middle;
+  }
+  return fmt::format("ridges of at most {} % of their height", low);
 }
 
 std::string HandleReport::amount_of(const Load& load) const {
@@ -227,7 +281,7 @@ void HandleReport::note_stiffest(const Load& load) {
   }
 }
 
-void HandleReport::add(Load load) {
+void HandleReport::add(Load load, const LoadOf& of_height) {
   note_stiffest(load);
   note_driving(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
@@ -238,11 +292,12 @@ void HandleReport::add(Load load) {
            other.damping == load.damping && other.mass == load.mass && other.cutoff == load.cutoff;
   });
   if (same == judged_.end()) {
-    judge(load);
+    judge(load, of_height);
     judged_.push_back(load);
   } else {
     load.lightest = same->lightest;
     load.own_hand = same->own_hand;
+    load.lower = same->lower;
   }
   if (load.lightest > 0.0 || !load.own_hand) {
     keep(load, &Load::lightest, worst_);
@@ -254,7 +309,10 @@ void HandleReport::add(const Presented& presented) {
     for (std::size_t device = 0; device < arms_.size(); ++device) {
       const bool felt = (presented.stages[stage].stage.fields & presented.felt[device]) != 0;
       felt_[static_cast<std::size_t>(arms_[device].part)].felt |= felt;
-      add(load_of(presented, stage, device));
+      const auto of_height = [&](double height) {
+        return load_of(presented, stage, device, height);
+      };
+      add(of_height(1.0), of_height);
     }
   }
   beginnings_.add(presented);
@@ -294,8 +352,9 @@ HandleText HandleReport::words() const {
     if (!load.own_hand) {
       words.warnings.push_back(fmt::format(
           "{}, which only hands of {:.2f} kg or more carry at {:g} Hz; the hand of [hand] has {:g} "
-          "kg, so that they are reduced in most trials",
-          sum_of(load), load.lightest, d_.rate, d_.hand.hand_mass));
+          "kg, so that they are reduced in most trials{}{}",
+          sum_of(load), load.lightest, d_.rate, d_.hand.hand_mass,
+          load.lower.empty() ? "" : "; it carries ", load.lower));
     }
   }
   for (const Load& load : driving_) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace haptrial::control {
 struct HandleLoop;
-}
+struct HeldBy;
+}  // namespace haptrial::control
 
 namespace haptrial::protocols {
 
@@ -44,11 +46,16 @@ class HandleReport {
     double cutoff{0.0};     // of its acceleration [Hz]
     double lightest{0.0};   // hand that carries it [kg]
     bool own_hand{true};    // that of [hand] does
+    bool ridged{false};     // ridges are part of it
+    std::string lower;      // how high they may be for the hand of [hand]; empty: as they are
   };
+  /// A load with this share of its ridges' height.
+  using LoadOf = std::function<Load(double)>;
   /// Keeps the largest demand of each stage and device.
   static void keep(const Load& load, double Load::*demand, std::vector<Load>& kept);
-  Load load_of(const Presented& presented, std::size_t stage, std::size_t device) const;
-  void add(Load load);
+  Load load_of(const Presented& presented, std::size_t stage, std::size_t device,
+               double height) const;
+  void add(Load load, const LoadOf& of_height);
   control::HandleLoop loop_of(const Load& load) const;
   std::string where(const Load& load) const;
   std::string sum_of(const Load& load) const;
@@ -56,7 +63,9 @@ class HandleReport {
   bool by_fingers(const Load& load) const;
   double heaviest(const Load& load) const;
   void reject_slow_swings(const Load& load, const control::HandleLoop& loop) const;
-  void judge(Load& load) const;
+  void judge(Load& load, const LoadOf& of_height) const;
+  std::string lower_ridges(const Load& load, const LoadOf& of_height,
+                           const control::HeldBy& hand) const;
   void note_driving(const Load& load);
   void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;

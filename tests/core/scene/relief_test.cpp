@@ -77,5 +77,34 @@ TEST(ReliefTest, ATextureHasItsRoughnessAndBand) {
   EXPECT_LT(above, 1e-4 * all);
 }
 
+// Root mean squares over many places: of the slope, and of the Laplacian by differences of slopes.
+TEST(ReliefTest, TheUsualSlopeAndCurvatureOfATextureAreItsRootMeanSquares) {
+  const TextureParameters parameters{"floor", Vector3d::UnitY(), 1e-4, 100.0, 900.0, 5};
+  const Texture texture(parameters, kSetting);
+  const auto slope_at = [&](const Vector3d& p) {
+    ReliefHere relief;
+    FieldState state;
+    texture.add(p, 1.0, relief, state);
+    return relief.slope;
+  };
+  constexpr int kPlaces = 20000;
+  constexpr double kAside = 1e-7;
+  double slopes = 0.0, curvatures = 0.0;
+  RandomStream random(1, "places");
+  for (int i = 0; i < kPlaces; ++i) {
+    const Vector3d p(random.uniform(-0.5, 0.5), 0.0, random.uniform(-0.5, 0.5));
+    const Vector3d slope = slope_at(p);
+    const double curvature = (slope_at(p + kAside * Vector3d::UnitX()).x() - slope.x() +
+                              slope_at(p + kAside * Vector3d::UnitZ()).z() - slope.z()) /
+                             kAside;
+    slopes += slope.squaredNorm();
+    curvatures += curvature * curvature;
+  }
+  const ReliefBound bound = parameters.relief_bound();
+  EXPECT_NEAR(std::sqrt(slopes / kPlaces), bound.usual_slope, 0.03 * bound.usual_slope);
+  EXPECT_NEAR(std::sqrt(curvatures / kPlaces), bound.usual_curvature, 0.03 * bound.usual_curvature);
+  EXPECT_LT(bound.usual_slope, 0.3 * bound.slope);
+}
+
 }  // namespace
 }  // namespace haptrial::scene::relief_test

@@ -6,6 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "protocols/psychophysics/definition/every_value.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 #include "tests/support/replaced.h"
@@ -113,6 +117,57 @@ TEST(HandleTextTest, AMatrixThatPushesIsNoDamperOfAWall) {
         .lines;
   };
   EXPECT_EQ(beside(R"("wall", "medium")"), beside(R"("wall")"));
+}
+
+std::string ridged(double amplitude, double period) {
+  return felt(R"("wall", "ridges")",
+              kWall + fmt::format("[fields.ridges]\ntype = \"grating\"\non = \"wall\"\n"
+                                  "direction = [1.0, 0.0, 0.0]\namplitude = {}\nperiod = {}\n",
+                                  amplitude, period));
+}
+
+// A sine of amplitude A and period p has s = 2 pi A / p and c = s 2 pi / p. The definitions were
+// found to swing, or to be calm, by dry runs of a hand of 0.8 kg that rests on them with 3 N.
+TEST(HandleTextTest, RidgesAreCountedAsStiffAsTheirGroovesAre) {
+  // 1000 (1 + s²) + 8 / (1 + s) c
+  EXPECT_THAT(problems_of_trials(ridged(5e-4, 1e-3)),  // swings by 5.0 N
+              Contains(AllOf(HasSubstr("its fields and the ridges on them add up to 48998.3 N/m"),
+                             HasSubstr("or ridges of at most "))));
+  EXPECT_THAT(problems_of_trials(ridged(2e-4, 5e-4)), Not(IsEmpty()));  // swings by 3.4 N
+  EXPECT_THAT(problems_of_trials(ridged(1e-4, 5e-4)), Not(IsEmpty()));  // swings by 3.2 N
+  EXPECT_THAT(words_of(ridged(3e-4, 1e-3)).warnings,                    // swings by 4.0 N
+              ElementsAre(AllOf(HasSubstr("the hand of [hand] has 0.8 kg"),
+                                HasSubstr("; it carries ridges of at most "))));
+  for (const auto& [amplitude, period] :
+       {std::pair{1.2e-3, 4e-3}, {4e-4, 2e-3}, {1e-4, 1e-3}, {2e-5, 5e-4}}) {
+    EXPECT_THAT(words_of(ridged(amplitude, period)).warnings, IsEmpty()) << amplitude;
+  }
+}
+
+TEST(HandleTextTest, RidgesOfTheNamedHeightAreCarriedAndHigherOnesAreNot) {
+  const double amplitude = 3e-4, period = 1e-3;
+  const std::string warning = words_of(ridged(amplitude, period)).warnings.at(0);
+  const auto at = warning.find("at most ");
+  ASSERT_NE(at, std::string::npos);
+  const double share = 0.01 * std::stod(warning.substr(at + 8));
+  EXPECT_THAT(words_of(ridged(share * amplitude, period)).warnings, IsEmpty());
+  EXPECT_THAT(words_of(ridged((share + 0.02) * amplitude, period)).warnings, Not(IsEmpty()));
+}
+
+// Hands that rest on such textures were calm in dry runs with up to 5.5 N: the crests of all waves
+// do not meet.
+TEST(HandleTextTest, ATextureIsCountedAsStiffAsItUsuallyIs) {
+  for (const auto& [roughness, highest] :
+       {std::pair{1e-4, 1000.0}, {2e-4, 1000.0}, {5e-5, 2000.0}}) {
+    const std::string text =
+        felt(R"("wall", "rough")",
+             kWall + fmt::format("[fields.rough]\ntype = \"texture\"\non = \"wall\"\n"
+                                 "normal = [0.0, 1.0, 0.0]\nroughness = {}\nlowest = 100.0\n"
+                                 "highest = {}\nseed = 3\n",
+                                 roughness, highest));
+    EXPECT_THAT(problems_of_trials(text), IsEmpty()) << roughness;
+    EXPECT_THAT(words_of(text).warnings, IsEmpty()) << roughness;
+  }
 }
 
 /// A study whose field or object f begins in the stage "feel", after a stage "wait".
