@@ -9,16 +9,14 @@ namespace haptrial::scene {
 using Eigen::Vector3d;
 
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
-/// bristle that is no stiffer. Of a body that is not prepared the spring alone is known. What moves
-/// keeps an account of its energy, in which the hand has a damping.
+/// bristle that is no stiffer. Of a body that moves or is not prepared the spring alone is known.
+/// What moves keeps an account of its energy, in which the hand has a damping.
 StiffnessBound DeformableObjectParameters::bound() const {
-  if (moves()) {
-    return {true, 0.0, deformable::EnergyAccount::kDamping};
-  }
   const double behind = body ? deformable::stiffest_touch(*body, tool.radius)
                              : std::numeric_limits<double>::infinity();
   const double both = 1.0 / (1.0 / tool.stiffness + 1.0 / behind);
-  return {true, tool.friction.static_friction > 0.0 ? 2.0 * both : both, 0.0};
+  return {true, tool.friction.static_friction > 0.0 ? 2.0 * both : both,
+          moves() ? deformable::EnergyAccount::kDamping : 0.0};
 }
 
 DeformableObject::DeformableObject(const DeformableObjectParameters& parameters,

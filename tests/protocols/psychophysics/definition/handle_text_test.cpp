@@ -170,6 +170,22 @@ TEST(HandleTextTest, ATextureIsCountedAsStiffAsItUsuallyIs) {
   }
 }
 
+// A body that moves hangs on the same spring of the hand as one that rests on every tick.
+TEST(HandleTextTest, ABodyThatMovesIsAsStiffAsTheSpringOfTheHand) {
+  const auto body = [](const char* model) {
+    return problems_of_trials(
+        felt(R"("body")", std::string("[objects.body]\nkind = \"deformable\"\nshape = \"box\"\n"
+                                      "size = [0.04, 0.02, 0.04]\ncells = 4\nyoung = 1e7\n"
+                                      "poisson = 0.4\ntool_radius = 0.005\nspring = 100000.0\n") +
+                              model));
+  };
+  EXPECT_THAT(body(""), Contains(AllOf(HasSubstr("add up to 100000 N/m"),
+                                       HasSubstr("no hand of up to 2 kg carries that"))));
+  EXPECT_THAT(body("model = \"implicit\"\ndensity = 1000.0\n"),
+              Contains(AllOf(HasSubstr("add up to 100000 N/m"),
+                             HasSubstr("no hand of up to 2 kg carries that"))));
+}
+
 /// A study whose field or object f begins in the stage "feel", after a stage "wait".
 /// @param until  ends the wait
 std::string begun(const std::string& f, const std::string& until = "until = { time = 1.0 }") {
