@@ -46,6 +46,9 @@ bool is_weak_friction(const std::vector<scene::Field>& fields, const scene::Fiel
   return std::min(friction->static_level * press, field.limit) < kWeak;
 }
 
+/// Hands that explore or press are seldom faster [m/s].
+constexpr double kOwnSpeed = 0.1;
+
 /// The press of a hand that feels how rough a surface is [N].
 constexpr double kPress = 3.0;
 
@@ -271,6 +274,13 @@ void HandleReport::note_driving(const Load& load) {
   keep(load, &Load::driving, driving_);
 }
 
+/// A force that follows the hand too slowly is still there when the hand has left its field.
+void HandleReport::note_late(const Load& load) {
+  if (load.stiffness * kOwnSpeed > arms_[load.device].limits.max_force_rate) {
+    keep(load, &Load::stiffness, late_);
+  }
+}
+
 void HandleReport::note_stiffest(const Load& load) {
   const DeviceArm& arm = arms_[load.device];
   const bool turns = arm.part == device::Part::kRotation;
@@ -284,6 +294,7 @@ void HandleReport::note_stiffest(const Load& load) {
 void HandleReport::add(Load load, const LoadOf& of_height) {
   note_stiffest(load);
   note_driving(load);
+  note_late(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
     return;
   }
@@ -362,6 +373,13 @@ HandleText HandleReport::words() const {
         "{} push movements on with up to {}: hands that damp less swing up by themselves (that of "
         "[hand] damps {}), and a handle that nobody holds runs away",
         where(load), damping_text(load, load.driving), damping_text(load, d_.hand.damping)));
+  }
+  for (const Load& load : late_) {
+    const double rate = arms_[load.device].limits.max_force_rate;
+    words.warnings.push_back(fmt::format(
+        "{}, and max_force_rate lets them follow a hand of at most {:.2g} m/s: a faster one is "
+        "pushed where nothing is; set it to {:g} N/s or more",
+        sum_of(load), rate / load.stiffness, std::ceil(kOwnSpeed * load.stiffness)));
   }
   for (const std::string& warning : certificate_warnings(d_, felt_)) {
     words.warnings.push_back(warning);

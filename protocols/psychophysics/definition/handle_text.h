@@ -67,6 +67,7 @@ class HandleReport {
   std::string lower_ridges(const Load& load, const LoadOf& of_height,
                            const control::HeldBy& hand) const;
   void note_driving(const Load& load);
+  void note_late(const Load& load);
   void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;
   std::string left_on_bare_handle(const Load& load) const;
@@ -75,6 +76,7 @@ class HandleReport {
   std::vector<DeviceArm> arms_;
   std::vector<Load> judged_;   // each sum once, whatever the stage
   std::vector<Load> worst_;    // (stages that some hand does not carry)
+  std::vector<Load> late_;     // (stages whose force follows the hand too slowly)
   std::vector<Load> driving_;  // (stages that push a hand along its way)
   BeginningReport beginnings_;
   FeltParts felt_;

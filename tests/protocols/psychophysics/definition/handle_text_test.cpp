@@ -170,6 +170,17 @@ TEST(HandleTextTest, ATextureIsCountedAsStiffAsItUsuallyIs) {
   }
 }
 
+// The force of 1000 N/m changes by 100 N/s for a hand of 0.1 m/s.
+TEST(HandleTextTest, ALimitOfTheForcesRateThatAHandOutrunsIsWarnedOf) {
+  const auto warnings = [](const char* rate) {
+    return words_of(felt(R"("wall")", kWall + "[envelope]\nmax_force_rate = " + rate + "\n"))
+        .warnings;
+  };
+  EXPECT_THAT(warnings("20.0"), ElementsAre(AllOf(HasSubstr("a hand of at most 0.02 m/s"),
+                                                  HasSubstr("set it to 100 N/s or more"))));
+  EXPECT_THAT(warnings("100.0"), IsEmpty());
+}
+
 // A body that moves hangs on the same spring of the hand as one that rests on every tick.
 TEST(HandleTextTest, ABodyThatMovesIsAsStiffAsTheSpringOfTheHand) {
   const auto body = [](const char* model) {
