@@ -27,8 +27,8 @@ std::vector<scene::Field> those_of(std::uint64_t mask, const std::vector<scene::
   return those;
 }
 
-/// Forces of less than this swing by less than what counts as an oscillation [N].
-constexpr double kWeak = 1.0;
+/// Forces of less than this swing to and fro by less than what counts as an oscillation, 1.5 N [N].
+constexpr double kWeak = 0.75;
 
 /// How hard a surface can be pressed [N].
 double most_press(const std::vector<scene::Field>& fields, const std::string& surface) {

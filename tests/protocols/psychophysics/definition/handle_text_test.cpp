@@ -69,8 +69,9 @@ TEST(HandleTextTest, FrictionOnASurfaceHoldsWithItsCoefficientTimesThePress) {
                                                     HasSubstr("no hand of up to 2 kg"))));
   EXPECT_EQ(rubbing(on_wall, 1e5), rubbing(in_space, 1e5));
   EXPECT_THAT(rubbing(on_wall, 2000.0), IsEmpty());
-  // 0.12 of 8 N are less than what counts as an oscillation.
-  EXPECT_THAT(rubbing("on = \"wall\"\nstatic = 0.12\ndynamic = 0.1\n", 1e5), IsEmpty());
+  // To and fro, 0.09 of 8 N are less than what counts as an oscillation, and 0.99 N are not.
+  EXPECT_THAT(rubbing("on = \"wall\"\nstatic = 0.09\ndynamic = 0.08\n", 1e5), IsEmpty());
+  EXPECT_THAT(rubbing("static = 0.99\ndynamic = 0.9\n", 1e5), Not(IsEmpty()));
 }
 
 // A hand of 2 kg has 15 N·s/m for each 0.8 kg, 37.5 N·s/m.
