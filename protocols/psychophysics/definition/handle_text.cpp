@@ -56,6 +56,7 @@ constexpr double kPress = 3.0;
 struct Ridges {
   double slope{0.0};  // s
   double hold{0.0};   // F c, with which a groove holds the hand [N/m]
+  double left{0.0};   // of the surface's limit, with ridges as steep as anywhere [N]
 
   bool felt() const { return hold > 0.0; }
 };
@@ -65,8 +66,10 @@ Ridges ridges_on(const std::vector<scene::Field>& fields, const scene::Field& su
                  double height) {
   const scene::ReliefBound reliefs = scene::reliefs_on(fields, surface);
   const double slope = height * reliefs.usual_slope;
-  const double press = std::min(kPress, surface.limit / (1.0 + height * reliefs.slope));
-  return press * slope < kWeak ? Ridges{} : Ridges{slope, press * height * reliefs.usual_curvature};
+  const double left = surface.limit / (1.0 + height * reliefs.slope);
+  const double press = std::min(kPress, left);
+  return press * slope < kWeak ? Ridges{0.0, 0.0, left}
+                               : Ridges{slope, press * height * reliefs.usual_curvature, left};
 }
 
 /// Bound on a field for a hand that rests on it. The energy phi(e) of a surface, e = depth + h, has
@@ -102,6 +105,11 @@ HandleReport::Load HandleReport::load_of(const Presented& presented, std::size_t
     const Ridges ridges = ridges_on(fields, field, height);
     const scene::StiffnessBound bound = bound_at_rest(field, ridges);
     load.ridged = load.ridged || ridges.felt();
+    if (field.limit - ridges.left > load.taken) {
+      load.taken = field.limit - ridges.left;
+      load.left = ridges.left;
+      load.surface = field.name;
+    }
     load.stiffness += std::isfinite(bound.stiffness) ? bound.stiffness : 0.0;
     load.damping += bound.damping;
     load.driving += bound.driving;
@@ -255,7 +263,7 @@ void HandleReport::keep(const Load& load, double Load::*demand, std::vector<Load
   }
 }
 
-/// The guard does not see it: the force follows the hand's own movement, however slow.
+/// The guard leaves such forces alone, as they swing no faster than hands move.
 /// @throws InputError if no hand damps as much
 void HandleReport::note_driving(const Load& load) {
   constexpr double kHardly = 0.1;  // [N·s/m]
@@ -281,6 +289,14 @@ void HandleReport::note_late(const Load& load) {
   }
 }
 
+/// Ridges push aside, too, and the whole force stays within the limit: less is left against a
+/// press.
+void HandleReport::note_taken(const Load& load) {
+  if (load.taken > load.left) {
+    keep(load, &Load::taken, taken_);
+  }
+}
+
 void HandleReport::note_stiffest(const Load& load) {
   const DeviceArm& arm = arms_[load.device];
   const bool turns = arm.part == device::Part::kRotation;
@@ -295,6 +311,7 @@ void HandleReport::add(Load load, const LoadOf& of_height) {
   note_stiffest(load);
   note_driving(load);
   note_late(load);
+  note_taken(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
     return;
   }
@@ -352,6 +369,30 @@ std::string HandleReport::left_on_bare_handle(const Load& load) const {
                       : fmt::format(", for a handle that nobody holds to:{}", fmt::join(less, ","));
 }
 
+/// Words about stages whose forces hands carry, but that are felt otherwise than they seem.
+void HandleReport::add_words_of_use(HandleText& words) const {
+  for (const Load& load : driving_) {
+    words.warnings.push_back(fmt::format(
+        "{} push movements on with up to {}: hands that damp less swing up by themselves (that of "
+        "[hand] damps {}), and a handle that nobody holds runs away",
+        where(load), damping_text(load, load.driving), damping_text(load, d_.hand.damping)));
+  }
+  for (const Load& load : taken_) {
+    (load.left < kPress ? words.warnings : words.lines)
+        .push_back(fmt::format(
+            "stage {}: ridges leave {} {:.3g} N of its limit of {:g} N, and a hand that presses "
+            "harder falls through; a higher limit or lower ridges leave more",
+            load.stage, load.surface, load.left, load.left + load.taken));
+  }
+  for (const Load& load : late_) {
+    const double rate = arms_[load.device].limits.max_force_rate;
+    words.warnings.push_back(fmt::format(
+        "{}, and max_force_rate lets them follow a hand of at most {:.2g} m/s: a faster one is "
+        "pushed where nothing is; set it to {:g} N/s or more",
+        sum_of(load), rate / load.stiffness, std::ceil(kOwnSpeed * load.stiffness)));
+  }
+}
+
 HandleText HandleReport::words() const {
   HandleText words;
   words.lines = beginnings_.lines();
@@ -368,19 +409,7 @@ HandleText HandleReport::words() const {
           load.lower.empty() ? "" : "; it carries ", load.lower));
     }
   }
-  for (const Load& load : driving_) {
-    words.warnings.push_back(fmt::format(
-        "{} push movements on with up to {}: hands that damp less swing up by themselves (that of "
-        "[hand] damps {}), and a handle that nobody holds runs away",
-        where(load), damping_text(load, load.driving), damping_text(load, d_.hand.damping)));
-  }
-  for (const Load& load : late_) {
-    const double rate = arms_[load.device].limits.max_force_rate;
-    words.warnings.push_back(fmt::format(
-        "{}, and max_force_rate lets them follow a hand of at most {:.2g} m/s: a faster one is "
-        "pushed where nothing is; set it to {:g} N/s or more",
-        sum_of(load), rate / load.stiffness, std::ceil(kOwnSpeed * load.stiffness)));
-  }
+  add_words_of_use(words);
   for (const std::string& warning : certificate_warnings(d_, felt_)) {
     words.warnings.push_back(warning);
   }

@@ -47,6 +47,9 @@ class HandleReport {
     double lightest{0.0};   // hand that carries it [kg]
     bool own_hand{true};    // that of [hand] does
     bool ridged{false};     // ridges are part of it
+    std::string surface;    // whose limit its ridges take most of
+    double taken{0.0};      // by them [N]
+    double left{0.0};       // by them, of that limit [N]
     std::string lower;      // how high they may be for the hand of [hand]; empty: as they are
   };
   /// A load with this share of its ridges' height.
@@ -68,14 +71,17 @@ class HandleReport {
                            const control::HeldBy& hand) const;
   void note_driving(const Load& load);
   void note_late(const Load& load);
+  void note_taken(const Load& load);
   void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;
   std::string left_on_bare_handle(const Load& load) const;
+  void add_words_of_use(HandleText& words) const;
 
   const TrialsDefinition& d_;
   std::vector<DeviceArm> arms_;
   std::vector<Load> judged_;   // each sum once, whatever the stage
   std::vector<Load> worst_;    // (stages that some hand does not carry)
+  std::vector<Load> taken_;    // (stages whose ridges take most of a surface's limit)
   std::vector<Load> late_;     // (stages whose force follows the hand too slowly)
   std::vector<Load> driving_;  // (stages that push a hand along its way)
   BeginningReport beginnings_;
