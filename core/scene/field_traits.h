@@ -21,6 +21,7 @@ struct FieldTraits {
   bool relief{false};       // shapes the force of the surface that it lies on, has none of its own
   bool object{false};       // one of [objects], not of [fields]
   bool yields{false};       // only resists the hand; else its force works on it
+  bool timed{false};        // its force has a course in time, from when it is switched on
   double asked_force{0.0};  // that it is to give, whatever the hand does [N]
   double mass{0.0};         // virtual [kg]
   double mass_cutoff{0.0};  // of the filter of the hand's acceleration that the mass takes [Hz]

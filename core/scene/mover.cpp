@@ -20,10 +20,10 @@ Mover::Mover(const MoverParameters& p, const Setting&)
 }
 
 void Mover::start(const PointState& hand) noexcept {
-  from_ = hand.position;
-  const double way = (to_ - from_).norm();
+  const double way = (to_ - hand.position).norm();
   // A hand that is there already gets a move of no duration.
-  move_ = control::MinimumJerkMove(from_, to_, way > 0.0 ? kPeakOverMean * way / duration_ : 1.0);
+  move_ = control::MinimumJerkMove(hand.position, to_,
+                                   way > 0.0 ? kPeakOverMean * way / duration_ : 1.0);
 }
 
 Eigen::Vector3d Mover::force(const Felt& felt, FieldState& state) noexcept {
@@ -31,7 +31,5 @@ Eigen::Vector3d Mover::force(const Felt& felt, FieldState& state) noexcept {
   state.done = felt.time >= duration_;
   return controller_.force(move_.at(felt.time), felt.hand, felt.shares);
 }
-
-void Mover::adopt(const Mover& before) noexcept { start({before.from_, Eigen::Vector3d::Zero()}); }
 
 }  // namespace haptrial::scene

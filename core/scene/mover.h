@@ -17,7 +17,7 @@ struct MoverParameters {
   control::PdGains gains{300.0, 20.0};          // k >= 0 [N/m], b >= 0 [N·s/m]
 
   StiffnessBound bound() const { return {false, gains.stiffness, gains.damping}; }
-  FieldTraits traits() const { return {.leads_to = to}; }
+  FieldTraits traits() const { return {.timed = true, .leads_to = to}; }
 };
 
 /// Leads the hand from where it is when the field is switched on: a spring and damper to a point
@@ -27,13 +27,12 @@ class Mover {
   Mover(const MoverParameters& parameters, const Setting& setting);
   void start(const PointState& hand) noexcept;
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
-  void adopt(const Mover& before) noexcept;
+  void adopt(const Mover& before) noexcept { move_ = before.move_; }
 
  private:
   Eigen::Vector3d to_;
   double duration_;
   control::PdController controller_;
-  Eigen::Vector3d from_{Eigen::Vector3d::Zero()};
   control::MinimumJerkMove move_;
 };
 

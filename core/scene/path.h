@@ -21,7 +21,7 @@ struct PathParameters {
   control::PdGains gains{900.0, 100.0};                           // k >= 0 [N/m], b >= 0 [N·s/m]
 
   StiffnessBound bound() const { return {false, gains.stiffness, gains.damping}; }
-  FieldTraits traits() const { return {.leads_to = points.back()}; }
+  FieldTraits traits() const { return {.timed = true, .leads_to = points.back()}; }
 };
 
 /// Guides the hand along a path: a spring and damper to a point that travels the lines between

@@ -41,7 +41,9 @@ struct RampParameters {
   double rise{1.0};                               // R > 0 [s]
 
   StiffnessBound bound() const { return {}; }
-  FieldTraits traits() const { return {.asked_force = std::max(from.norm(), to.norm())}; }
+  FieldTraits traits() const {
+    return {.timed = true, .asked_force = std::max(from.norm(), to.norm())};
+  }
 };
 
 /// f(t) = f_0 + (f_1 - f_0) min(t / R, 1), with t from the moment it is switched on. Active.
@@ -62,7 +64,7 @@ struct PulseParameters {
   double rise{0.0};                                // of each edge R, 0 to D / 2 [s]
 
   StiffnessBound bound() const { return {}; }
-  FieldTraits traits() const { return {.asked_force = force.norm()}; }
+  FieldTraits traits() const { return {.timed = true, .asked_force = force.norm()}; }
 };
 
 /// f(t) = f g(t - delay), where g rises as (1 - cos(pi t / R)) / 2, stays at 1 and falls in the

@@ -82,6 +82,7 @@ struct Scene::Part {
   Law law;
   std::size_t kind;  // index in FieldKind
   bool surface;      // others may lie on it
+  bool timed;        // its force has a course in time
   double limit;
   double fade_in;
   double fade_out;
@@ -123,8 +124,8 @@ Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate
       require(std::isfinite(field.fade_out) && field.fade_out >= 0.0,
               "fade_out must be finite and at least 0");
       parts_.push_back({law_of(field, {field.limit, rate}), field.kind.index(),
-                        traits_of(field).surface, field.limit, field.fade_in, field.fade_out,
-                        index_of_surface(fields, field)});
+                        traits_of(field).surface, traits_of(field).timed, field.limit,
+                        field.fade_in, field.fade_out, index_of_surface(fields, field)});
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument("field " + field.name + ": " + error.what());
     }
@@ -145,12 +146,22 @@ void Scene::switch_to(std::uint64_t mask) noexcept {
     if (on == part.fade.on()) {
       continue;
     }
-    if (on && !part.acts()) {
+    if (on && (part.timed || !part.acts())) {
       part.begins = true;
       part.state = {};
+      part.fade = {};
     }
     part.fade.turn(on, on ? part.fade_in : part.fade_out);
   }
+}
+
+void Scene::restart_with(std::uint64_t mask) noexcept {
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    if (parts_[i].timed && (mask >> i & 1u) != 0) {
+      parts_[i].fade = {};
+    }
+  }
+  switch_to(mask);
 }
 
 void Scene::start_from(const Scene& before) noexcept {

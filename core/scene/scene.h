@@ -18,7 +18,8 @@ namespace haptrial::scene {
 ///
 ///     Scene scene(fields, 1000.0);            // before the trial, any thread
 ///     scene.start_from(previous);             // servo thread: what goes on acting does not jump
-///     scene.switch_to(0b101);                 // servo thread, when a stage begins
+///     scene.restart_with(0b101);              // servo thread, when an interval begins
+///     scene.switch_to(0b100);                 // servo thread, when another stage begins
 ///     force = scene.force(hand);              // servo thread, every tick
 ///
 /// Numbers that change between trials make a new scene. Reliefs are summed first, then surfaces,
@@ -39,9 +40,13 @@ class Scene {
 
   // Servo thread, all of the following: no allocation, lock, I/O or throw.
 
-  /// Fields in the mask fade in, the others fade out. A field that acts already goes on; one that
-  /// is switched on begins anew (its time, filters and extremes) at the next tick.
+  /// Fields in the mask fade in, the others fade out. A field that is on already goes on; one that
+  /// is switched on begins anew (its time, filters and extremes) at the next tick, except that one
+  /// without a course in time goes on if it still fades out.
   void switch_to(std::uint64_t mask) noexcept;
+  /// The same, but fields with a course in time begin anew, even if they are on already: an
+  /// interval begins, or is repeated.
+  void restart_with(std::uint64_t mask) noexcept;
   /// Takes over weights, times, filters and bristles of fields that are of the same kind at the
   /// same index in `before`.
   void start_from(const Scene& before) noexcept;

@@ -79,7 +79,7 @@ struct TapParameters {
   double decay{0.01};       // time constant > 0 [s]
 
   StiffnessBound bound() const { return {}; }
-  FieldTraits traits() const { return {}; }
+  FieldTraits traits() const { return {.timed = on.empty()}; }
 };
 
 /// f(t) = A exp(-t / decay) sin(2 pi frequency t) u, t from the tap on. On a surface A grows with

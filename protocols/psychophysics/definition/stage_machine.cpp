@@ -95,7 +95,12 @@ void StageMachine::enter(std::size_t stage, Scenes scenes) noexcept {
   held_ = -1.0;
   buttons_pressed_ = keys_pressed_ = 0;
   for (std::size_t device = 0; device < scenes.size(); ++device) {
-    scenes[device].switch_to(stages_[stage].fields & felt_[device]);
+    const std::uint64_t fields = stages_[stage].fields & felt_[device];
+    if (stage == 0) {  // of an interval, or of its repetition
+      scenes[device].restart_with(fields);
+    } else {
+      scenes[device].switch_to(fields);
+    }
     scenes[device].forget_extremes();
   }
 }

@@ -249,6 +249,80 @@ TEST(SceneTest, AFieldBeginsAnewWhenItIsSwitchedOnAgain) {
   }
 }
 
+/// Fields whose force depends on when they began, with a fade that is part of it.
+std::vector<Field> every_timed_kind() {
+  std::vector<Field> fields{field("ramp", RampParameters{kOrigin, {2.0, 0.0, 0.0}, 0.1}),
+                            field("pulse", PulseParameters{{0.0, 3.0, 0.0}, 0.03, 0.1, 0.02}),
+                            field("tap", TapParameters{"", {0.0, 0.0, 1.0}}),
+                            field("mover", MoverParameters{{0.03, 0.0, 0.0}, 0.2}),
+                            field("path", PathParameters{{kOrigin, {0.0, 0.02, 0.0}}, 0.15})};
+  for (Field& each : fields) {
+    each.fade_in = 0.02;
+  }
+  return fields;
+}
+
+TEST(SceneTest, ACourseInTimeIsTheSameInEveryInterval) {
+  const std::vector<Field> fields = every_timed_kind();
+  const PointState held{{0.01, -0.005, 0.002}, Vector3d::Zero()};
+  Scene first(fields, kRate);
+  first.restart_with(Scene::kAll);
+  std::vector<Vector3d> forces(180);
+  for (Vector3d& force : forces) {
+    force = first.force(held);
+  }
+  Scene second(fields, kRate);
+  second.start_from(first);
+  second.restart_with(Scene::kAll);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    ASSERT_LT((second.force(held) - forces[i]).norm(), 1e-12) << i << " ms of the next interval";
+  }
+  second.restart_with(Scene::kAll);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    ASSERT_LT((second.force(held) - forces[i]).norm(), 1e-12) << i << " ms of the repetition";
+  }
+  second.switch_to(Scene::kAll);
+  EXPECT_GT((second.force(held) - forces[0]).norm(), 1.0) << "the next stage goes on";
+}
+
+/// The spring's end is on the polynomial of Flash and Hogan, from the hand to the new place.
+TEST(SceneTest, TheNextIntervalLeadsTheHandFromWhereItIs) {
+  const auto mover_to = [](double x) {
+    return std::vector<Field>{field("mover", MoverParameters{{x, 0.0, 0.0}, 0.5, {100.0, 0.0}})};
+  };
+  Scene first(mover_to(-0.03), kRate);
+  first.restart_with(1);
+  const PointState there{{-0.029, 0.0, 0.0}, Vector3d::Zero()};
+  for (int i = 0; i < 600; ++i) {
+    first.force(there);
+  }
+  Scene second(mover_to(0.03), kRate);
+  second.start_from(first);
+  second.restart_with(1);
+  for (int i = 0; i <= 500; ++i) {
+    const double u = i / 500.0;
+    const double moved = 0.059 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+    ASSERT_NEAR(second.force(there).x(), 100.0 * moved, 1e-9) << i;
+  }
+}
+
+/// A stage without the pulse that is shorter than its fade lies between two with it.
+TEST(SceneTest, APulseComesAgainWithinItsFade) {
+  Field pulse = field("pulse", PulseParameters{{0.0, 3.0, 0.0}, 0.0, 0.05});
+  pulse.fade_out = 0.1;
+  Scene scene({pulse}, kRate);
+  for (int round = 0; round < 2; ++round) {
+    scene.switch_to(1);
+    double impulse = 0.0;
+    for (int i = 0; i < 60; ++i) {
+      impulse += scene.force({}).y() / kRate;
+    }
+    EXPECT_NEAR(impulse, 3.0 * 0.05, 1e-9);
+    scene.switch_to(0);
+    scene.force({});
+  }
+}
+
 TEST(SceneTest, WhatWasFeltCanBeRead) {
   Scene scene({test::surface(HalfSpace{}, false, 0.0)}, kRate);
   scene.switch_to(1);

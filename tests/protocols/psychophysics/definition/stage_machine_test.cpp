@@ -171,6 +171,27 @@ TEST_F(StageMachineTest, LateStagesGoOnAbortOrRepeat) {
   EXPECT_EQ(repeats.repeats(), 3);
 }
 
+TEST_F(StageMachineTest, ARepeatedIntervalHasItsPulseAgain) {
+  scene_ = scene::Scene({{.name = "pulse",
+                          .kind = scene::PulseParameters{{0.0, 3.0, 0.0}, 0.02, 0.01},
+                          .fade_in = 0.0,
+                          .fade_out = 0.0}},
+                        1.0 / kDt);
+  Stage stage;
+  stage.fields = 1;
+  stage.until.inside = 0b1;
+  stage.timeout = 0.05;
+  stage.late = Consequence::kRepeat;
+  repeats_ = 2;
+  StageMachine m = machine({stage});
+  double impulse = 0.0;
+  run(m, [&](double) {
+    impulse += kDt * scene_.state(0).force.y();  // of the tick before
+    return at_height(0.02);
+  });
+  EXPECT_NEAR(impulse, 3 * 3.0 * 0.01, 1e-9) << "once and twice more";
+}
+
 TEST_F(StageMachineTest, WhoDidNotPressGetsTheIntervalAgain) {
   Stage press;
   press.fields = 1;
