@@ -18,6 +18,7 @@ class PenaltyRenderer final : public Renderer {
                   const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  void set_damping_share(double share) noexcept override { spring_.set_damping_share(share); }
   const Operations& operations() const noexcept override { return operations_; }
 
  private:
@@ -37,6 +38,7 @@ class VoxelRenderer final : public Renderer {
                 const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  void set_damping_share(double share) noexcept override { spring_.set_damping_share(share); }
   const Operations& operations() const noexcept override { return operations_; }
 
  private:
@@ -59,6 +61,7 @@ class DistanceFieldRenderer final : public Renderer {
                         const RendererOptions& options);
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  void set_damping_share(double share) noexcept override { spring_.set_damping_share(share); }
   const Operations& operations() const noexcept override { return operations_; }
 
  private:

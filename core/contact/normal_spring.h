@@ -16,8 +16,9 @@ inline double damper_share(double depth) noexcept {
 
 /// Spring and damper along a surface's normal:
 ///
-///     f = max(0, k depth + b c(depth) u) n,  c = damper_share,  u = d depth / dt
+///     f = max(0, k depth + s b c(depth) u) n,  c = damper_share,  u = d depth / dt
 ///
+/// s is the damping share, 1 unless the handle does not carry the damping.
 /// It pushes and never pulls. u follows the readings with a time constant of 2 ms: the last step of
 /// an encoder over a tick is mostly noise.
 class NormalSpring {
@@ -26,6 +27,7 @@ class NormalSpring {
       : stiffness_(options.stiffness), damping_(options.damping), unit_(options.unit) {}
 
   void start() noexcept { before_ = rate_ = 0.0; }
+  void set_damping_share(double share) noexcept { share_ = share; }
   /// @param depth  0 when there is no contact [m]  @returns the size of the force [N]
   double force(double depth, double period) noexcept {
     if (period > 0.0) {
@@ -33,14 +35,14 @@ class NormalSpring {
       rate_ += period / (kFilter + period) * ((depth - before_) / period - rate_);
     }
     before_ = depth;
-    return depth > 0.0
-               ? std::max(0.0, stiffness_ * depth + damping_ * damper_share(unit_ * depth) * rate_)
-               : 0.0;
+    const double damping = share_ * damping_ * damper_share(unit_ * depth);
+    return depth > 0.0 ? std::max(0.0, stiffness_ * depth + damping * rate_) : 0.0;
   }
   double stiffness() const noexcept { return stiffness_; }
 
  private:
   double stiffness_, damping_, unit_;
+  double share_{1.0};  // s
   double before_{0.0};
   double rate_{0.0};  // u [m/s]
 };

@@ -22,6 +22,7 @@ class ProxyRenderer final : public Renderer {
 
   void start(const Eigen::Vector3d& tool) noexcept override;
   const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
+  void set_damping_share(double share) noexcept override { spring_.set_damping_share(share); }
   const Operations& operations() const noexcept override { return proxy_.operations(); }
 
   const Proxy& proxy() const noexcept { return proxy_; }

@@ -56,6 +56,9 @@ class Renderer {
   /// One tick. @param tool  [m]; not finite: zero force
   /// @param period  since the tick before > 0 [s]
   virtual const Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;
+  /// The share of its damping that the renderer uses from now on, 0 to 1, since a light hand does
+  /// not carry all of it. A renderer without a damper has nothing to do.
+  virtual void set_damping_share(double share) noexcept { static_cast<void>(share); }
   /// Operations of the ticks since the last start(); those of a tool that is not finite take
   /// nothing.
   virtual const Operations& operations() const noexcept = 0;

@@ -114,6 +114,8 @@ Vector3d RigidObject::force(const Felt& felt, FieldState& state) noexcept {
   if (!renderer_) {
     return Vector3d::Zero();
   }
+  // The share of stiffness is taken from the whole force, so the damper's own is over it.
+  renderer_->set_damping_share(felt.shares.damping / felt.shares.stiffness);
   const contact::Contact& contact = renderer_->tick(to_body(felt.hand.position), period_);
   proxy_ = parameters_.pose.orientation * (parameters_.scale * contact.proxy) +
            parameters_.pose.position;

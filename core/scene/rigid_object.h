@@ -33,7 +33,8 @@ struct RigidObjectParameters {
   }
 };
 
-/// A mesh rendered by its proxy (core/contact), in W:
+/// A mesh rendered by its proxy (core/contact), in W, with the shares of k and b that the handle
+/// carries:
 ///
 ///     f = max(0, k |pushed| + b d|pushed| / dt) n + k dragged
 ///

@@ -71,6 +71,7 @@ class LossyRenderer final : public contact::Renderer {
     before_ = contact_.depth;
     return contact_;
   }
+  void set_damping_share(double share) noexcept override { spring_.set_damping_share(share); }
   const contact::Operations& operations() const noexcept override { return spring_.operations(); }
 
  private:

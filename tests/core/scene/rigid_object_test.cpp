@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/random.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
 #include "core/scene/scene.h"
 #include "tests/support/allocation_guard.h"
@@ -141,6 +142,33 @@ TEST(RigidObjectTest, RidgesLieBelowTheMesh) {
   }
   EXPECT_NEAR(most, 700.0 * depth, 0.01);  // on a ridge
   EXPECT_NEAR(least, 700.0 * (depth - 0.0008), 0.01);
+}
+
+/// A hand that goes into a face at 0.1 m/s: k d and b v with the share of each.
+TEST(RigidObjectTest, StiffnessAndDampingGiveWayByTheirOwnShares) {
+  RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
+  p.gains.damping = 20.0;
+  p.resolution = 128;
+  const Vector3d out = p.pose.orientation * Vector3d::UnitY();
+  for (const contact::RendererKind kind :
+       {contact::RendererKind::kProxy, contact::RendererKind::kPenalty,
+        contact::RendererKind::kVoxel, contact::RendererKind::kDistanceField}) {
+    p.renderer = kind;
+    for (const control::GainShares& shares :
+         {control::GainShares{1.0, 1.0}, control::GainShares{1.0, 0.05},
+          control::GainShares{0.4, 0.02}}) {
+      Scene scene({placed(p)}, kRate);
+      scene.switch_to(Scene::kAll);
+      Vector3d force = Vector3d::Zero();
+      for (int i = 0; i <= 60; ++i) {  // 1 mm above the face to 5 mm below it
+        const double y = 0.016 - 1e-4 * i;
+        force = scene.force({p.pose.position + y * out, -0.1 * out}, shares);
+      }
+      const double exact = shares.stiffness * 700.0 * 0.005 + shares.damping * 20.0 * 0.1;
+      EXPECT_NEAR(force.dot(out), exact, 0.02 * exact)
+          << contact::name_of(kind) << ", shares " << shares.stiffness << " and " << shares.damping;
+    }
+  }
 }
 
 TEST(RigidObjectTest, ATickAllocatesNothing) {
