@@ -11,8 +11,10 @@ struct ForceIntent {
       Eigen::Vector3d::Zero()};                   // velocity of what the force pulls to, in W [m/s]
   Eigen::Vector3d push{Eigen::Vector3d::Zero()};  // the part that is to work on the hand, in W [N]
   /// The part whose course in time is itself the stimulus, such as a vibration: it is no swing, and
-  /// a change of stage does not smooth it. In W [N]
+  /// a change of stage does not smooth its beginning. In W [N]
   Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};
+  /// Stimulus of the tick before that does not go on. A change of stage smooths its end. In W [N]
+  Eigen::Vector3d ended{Eigen::Vector3d::Zero()};
   double stored{0.0};  // in springs of the protocol >= 0 [J]
   double added{0.0};   // of `stored`, by the protocol itself since the tick before [J]
 };

@@ -183,6 +183,7 @@ void Envelope::watch_force(const Eigen::Vector3d& force, double dt,
 }
 
 /// The rest of the force from before the protocol went over to others; it fades.
+/// @param wanted  without the stimulus, and less the stimulus that ended [N]
 Eigen::Vector3d Envelope::blend(const Eigen::Vector3d& wanted, double dt) noexcept {
   if (std::exchange(goes_over_, false)) {
     left_over_ = followed_ - wanted;
@@ -212,7 +213,7 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
   }
   since_start_ += dt;
   const double share = limits_.ramp_in > 0.0 ? std::min(1.0, since_start_ / limits_.ramp_in) : 1.0;
-  const Eigen::Vector3d left_over = blend(wanted - intent.stimulus, dt);
+  const Eigen::Vector3d left_over = blend(wanted - intent.stimulus - intent.ended, dt);
   const Eigen::Vector3d grown = share * (wanted + left_over);
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
   const double passed = longer(grown, most) ? most / grown.norm() : 1.0;

@@ -69,8 +69,8 @@ class Envelope {
   void release() noexcept;
   /// The opposite of release(): the force follows limit() again and ramps in. A fault stays.
   void engage() noexcept;
-  /// The protocol goes over to other forces with the next limit(): what changes by that, but for
-  /// the stimulus of its intent, fades over change_time.
+  /// The protocol goes over to other forces with the next limit(): what changes by that fades over
+  /// change_time, and so does a stimulus that ended; one that begins or goes on is left as it is.
   void go_over() noexcept { goes_over_ = true; }
   /// The loop has not run for a while, so the force that it gave last is no longer due: it begins
   /// at zero and ramps in. The next reading may be far from the last.

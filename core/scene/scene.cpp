@@ -148,7 +148,7 @@ void Scene::switch_to(std::uint64_t mask) noexcept {
     }
     if (on && (part.timed || !part.acts())) {
       part.begins = true;
-      part.state = {};
+      part.state = {.stimulus = part.state.stimulus};
       part.fade = {};
     }
     part.fade.turn(on, on ? part.fade_in : part.fade_out);
@@ -262,6 +262,7 @@ void Scene::store(Part& part, double share) noexcept {
 
 Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
                       std::span<const double> channels) noexcept {
+  ended_.setZero();
   if (!hand.position.allFinite() || !hand.velocity.allFinite()) {
     return Vector3d::Zero();
   }
@@ -269,6 +270,9 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
     part.state.work += part.state.force.dot(hand.position - before_);
     part.state.weight = part.fade.weight();
     part.state.force.setZero();
+    if (part.begins || !part.acts()) {
+      ended_ += part.state.stimulus;
+    }
     part.state.stimulus.setZero();
     part.state.stored = part.state.added = 0.0;
     if (!part.acts()) {
@@ -297,10 +301,6 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
   }
   share_ = shares.stiffness;
   return sum;
-}
-
-bool Scene::acts() const noexcept {
-  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
 }
 
 void Scene::forget_extremes() noexcept {

@@ -56,8 +56,9 @@ class Scene {
   /// @returns the force on the hand [N]; zero, with nothing changed, if the hand is not finite.
   Eigen::Vector3d force(const PointState& hand, const control::GainShares& shares = {},
                         std::span<const double> channels = {}) noexcept;
-  /// Whether a field is switched on, or still fades out.
-  bool acts() const noexcept;
+  /// Stimulus of the tick before the last that ended with the last, since its field was switched
+  /// off without a fade or began anew [N].
+  const Eigen::Vector3d& ended() const noexcept { return ended_; }
   /// Begins max_depth, max_force and work of every field anew: at a stage's beginning.
   void forget_extremes() noexcept;
 
@@ -85,6 +86,7 @@ class Scene {
   double period_;
   Eigen::Vector3d before_{Eigen::Vector3d::Zero()};  // the hand a tick ago [m]
   double share_{1.0};                                // of stiffness, a tick ago
+  Eigen::Vector3d ended_{Eigen::Vector3d::Zero()};   // [N]
 };
 
 }  // namespace haptrial::scene

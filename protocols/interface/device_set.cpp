@@ -93,6 +93,7 @@ void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
   const Eigen::Vector3d force = drive.force.cwiseProduct(axes);
   device::ForceIntent intent = drive.intent;
   intent.stimulus = intent.stimulus.cwiseProduct(axes);
+  intent.ended = intent.ended.cwiseProduct(axes);
   const double most = std::max(std::min(envelope.limits().max_force, drive.most), force.norm());
   const Eigen::Vector3d calm = control::saturate(force + guards_[arm].calming(), most);
   forces_[arm] = envelope.limit(calm, dt, intent);

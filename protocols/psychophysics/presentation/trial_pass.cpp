@@ -118,6 +118,7 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
   const scene::Scene& scene = run.scenes[device];
   Drive drive;
   drive.force = force;
+  drive.intent.ended = passed_[device] * scene.ended();
   for (std::size_t field = 0; field < scene.size(); ++field) {
     if ((run.pushing >> field & 1) != 0) {
       drive.intent.push += scene.state(field).force;
@@ -128,7 +129,9 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
     saturated_ = saturated_ || scene.state(field).limited;
   }
   const double most = setup_.max_force[device];
-  if (const double size = force.norm(); size > most) {
+  const double size = force.norm();
+  passed_[device] = size > most ? most / size : 1.0;
+  if (size > most) {
     drive.force *= most / size;
     drive.intent.push *= most / size;
     drive.intent.stimulus *= most / size;
@@ -224,11 +227,9 @@ void TrialPass::feel(const Readings& readings) noexcept {
   IntervalRun& run = setup_.intervals[interval_];
   const std::size_t devices = std::min(device_count_, run.scenes.size());
   for (std::size_t device = 0; device < devices; ++device) {
-    if (run.scenes[device].acts()) {
-      const device::DeviceReading& reading = readings[device];
-      drives_[device] = drive(
-          run, device, run.scenes[device].force(reading.tool, reading.shares, reading.channels));
-    }
+    const device::DeviceReading& reading = readings[device];
+    drives_[device] = drive(
+        run, device, run.scenes[device].force(reading.tool, reading.shares, reading.channels));
   }
 }
 

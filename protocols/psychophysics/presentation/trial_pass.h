@@ -227,7 +227,8 @@ class TrialPass final : public Pass {
   std::uint64_t stage_begun_{kNever};  // tick at which the stage that was told last began
   std::size_t question_{0};
   TrialView view_;
-  std::array<Drive, kMostDevices> drives_{};  // of the last tick
+  std::array<Drive, kMostDevices> drives_{};             // of the last tick
+  std::array<double, kMostDevices> passed_{1, 1, 1, 1};  // by the limit, of the forces' sum
   std::size_t device_count_{1};
   bool saturated_{false};
   std::uint64_t sequence_{0};

@@ -486,6 +486,29 @@ TEST(EnvelopeTest, WhatChangesByGoingOverFades) {
   EXPECT_EQ(tick({4, 2, 0}, pulse), Vector3d(4, 2, 0)) << "a stimulus begins as it is meant to";
 }
 
+/// Of two stimuli one ends with the change and one goes on: an alternating force of 3 N.
+TEST(EnvelopeTest, AStimulusThatEndsByGoingOverFades) {
+  EnvelopeLimits limits = open_limits();
+  limits.change_time = 0.1;
+  Envelope envelope(limits);
+  double x = 0.0;
+  const auto tick = [&](double pulse, double alternating, double ended) {
+    ForceIntent intent;
+    intent.stimulus = {pulse, alternating, 0};
+    intent.ended = {ended, 0, 0};
+    envelope.check(true, at({x += 1e-6, 0, 0}));
+    return envelope.limit({pulse, 1.0 + alternating, 0}, kDt, intent);
+  };
+  tick(5, 3, 0);
+  envelope.go_over();
+  for (int i = 1; i <= 120; ++i) {
+    const double u = std::min(1.0, i / 100.0);
+    const Vector3d force = tick(0, i % 2 == 0 ? 3 : -3, i == 1 ? 5 : 0);
+    ASSERT_NEAR(force.x(), 5.0 * (1.0 - u * u * (3.0 - 2.0 * u)), 1e-9) << i;
+    ASSERT_EQ(force.y(), i % 2 == 0 ? 4.0 : -2.0) << i;
+  }
+}
+
 TEST(EnvelopeTest, AfterAGapTheForceRampsInFromZero) {
   EnvelopeLimits limits;
   limits.ramp_in = 0.2;

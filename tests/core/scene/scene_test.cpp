@@ -306,6 +306,27 @@ TEST(SceneTest, TheNextIntervalLeadsTheHandFromWhereItIs) {
   }
 }
 
+TEST(SceneTest, AStimulusThatIsCutOffIsKnownOnTheNextTick) {
+  Field wave = field("wave", SineVibrationParameters{{0.0, 1.0, 0.0}, 2.0, 50.0});
+  wave.fade_out = 0.1;
+  const std::vector<Field> fields{field("long", PulseParameters{{3.0, 0.0, 0.0}, 0.0, 5.0}),
+                                  field("other", PulseParameters{{0.0, 0.0, 4.0}, 0.0, 5.0}), wave};
+  Scene scene(fields, kRate);
+  scene.restart_with(Scene::kAll);
+  scene.force({});
+  EXPECT_EQ(scene.ended(), kOrigin);
+  scene.switch_to(0b010);
+  scene.force({});
+  EXPECT_EQ(scene.ended(), Vector3d(3.0, 0.0, 0.0)) << "the vibration fades, the other goes on";
+  scene.force({});
+  EXPECT_EQ(scene.ended(), kOrigin) << "once";
+  Scene next(fields, kRate);
+  next.start_from(scene);
+  next.restart_with(0b010);
+  next.force({});
+  EXPECT_EQ(next.ended(), Vector3d(0.0, 0.0, 4.0)) << "it begins anew with the next interval";
+}
+
 /// A stage without the pulse that is shorter than its fade lies between two with it.
 TEST(SceneTest, APulseComesAgainWithinItsFade) {
   Field pulse = field("pulse", PulseParameters{{0.0, 3.0, 0.0}, 0.0, 0.05});

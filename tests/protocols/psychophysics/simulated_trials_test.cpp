@@ -28,13 +28,16 @@ namespace {
 
 using record::ResponseSource;
 
-/// Place of the tip on each tick.
+/// Place of the tip on each tick, and the force on it.
 class Tips final : public stimulus::Observer {
  public:
-  void observe(const stimulus::Shown& shown, const stimulus::Forces&, double) noexcept override {
+  void observe(const stimulus::Shown& shown, const stimulus::Forces& forces,
+               double) noexcept override {
     at.push_back(shown.tool);
+    felt.push_back(forces[0]);
   }
   std::vector<Eigen::Vector3d> at;
+  std::vector<Eigen::Vector3d> felt;  // [N]
 };
 
 /// The forces on the first body that is seen, and the tool, on each tick on which any press it.
@@ -238,6 +241,78 @@ TEST_F(SimulatedTrialsTest, AVirtualHandAnswersOnALine) {
     strong += row.value > 0.5 ? 1 : 0;
   }
   EXPECT_EQ(strong, 6) << "the strong pulls are called stronger";
+}
+
+/// A hand that holds still is asked about fields in stages.
+std::string still(const std::string& fields_and_stages) {
+  return R"([experiment]
+protocol = "trials"
+name = "still"
+[design]
+participants = 1
+[observer]
+decides = "yes"
+criterion = 0.15
+[response]
+question = "Did you feel it?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[blocks]]
+name = "one"
+trials = 3
+)" + fields_and_stages;
+}
+
+/// With edges of 50 ms a pulse of 200 ms has its force for 150 ms. The device's force is not
+/// exactly the pulse's, since the hand moves and the guard damps.
+TEST_F(SimulatedTrialsTest, EveryIntervalHasItsPulse) {
+  ASSERT_NO_FATAL_FAILURE(simulate_trials(still(R"(
+[intervals]
+first = { a = 2.0 }
+second = { a = 4.0 }
+[fields.pulse]
+type = "pulse"
+force = ["$a", 0.0, 0.0]
+duration = 0.2
+delay = 0.3
+rise = 0.05
+[[stages]]
+name = "feel"
+fields = ["pulse"]
+until = { time = 1.0 }
+)")));
+  double impulse = 0.0;
+  for (const Eigen::Vector3d& force : tips_.felt) {
+    impulse += 1e-3 * force.x();
+  }
+  EXPECT_NEAR(impulse, 3 * (2.0 + 4.0) * 0.15, 0.01);
+}
+
+/// A pulse that would go on is cut off by a stage, by the next interval and by the question.
+TEST_F(SimulatedTrialsTest, NoStepComesWhereAStageCutsAStimulusOff) {
+  const std::string pulse =
+      "type = \"pulse\"\nforce = [7.0, 0.0, 0.0]\nduration = 5.0\nrise = 0.5\n";
+  const std::string wave =
+      "type = \"vibration\"\ndirection = [1.0, 0.0, 0.0]\namplitude = 7.0\nfrequency = 5.0\n";
+  const std::string between = "[[stages]]\nname = \"after\"\nuntil = { time = 0.3 }\n";
+  const std::string intervals = "[intervals]\nfirst = { }\nsecond = { }\n";
+  for (const std::string& field : {pulse, wave}) {
+    for (const std::string& more : {between, std::string(), intervals}) {
+      SCOPED_TRACE(field + more);
+      tips_.felt.clear();
+      outcomes_.clear();
+      ASSERT_NO_FATAL_FAILURE(simulate_trials(
+          still((more == intervals ? more : "") + "[fields.given]\n" + field +
+                "[[stages]]\nname = \"feel\"\nfields = [\"given\"]\nuntil = { time = 0.95 }\n" +
+                (more == between ? more : ""))));
+      double most = 0.0, step = 0.0;
+      for (std::size_t i = 1; i < tips_.felt.size(); ++i) {
+        most = std::max(most, tips_.felt[i].norm());
+        step = std::max(step, (tips_.felt[i] - tips_.felt[i - 1]).norm());
+      }
+      EXPECT_GT(most, 6.5);
+      EXPECT_LT(step, 7.0 * (1.5e-3 / 0.05 + 2.0 * M_PI * 5.0 * 1e-3)) << "a fade and a slope";
+    }
+  }
 }
 
 /// A wall that is pressed, with measures of the press and nothing asked.
