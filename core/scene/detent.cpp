@@ -11,9 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kOwnMovement = 3.0;  // a hand's way over the rest positions ends about there [Hz]
-constexpr double kPassed = 4.0;       // rest positions a second; from here on the force alternates
-
 Vector3d unit_of(const Vector3d& direction, const char* sentence) {
   require(direction.allFinite() && direction.norm() > 0.0, sentence);
   return direction.normalized();
@@ -25,7 +22,8 @@ Detent::Detent(const DetentParameters& p, const Setting& setting)
     : parameters_(p),
       direction_(unit_of(p.direction, "Detent: direction must be finite and not zero")),
       wave_(2.0 * std::numbers::pi / p.spacing),
-      speed_(kOwnMovement, setting.rate) {
+      way_(setting.rate),
+      period_(1.0 / setting.rate) {
   require(p.at.allFinite(), "Detent: at must be finite");
   require(std::isfinite(p.spacing) && p.spacing > 0.0,
           "Detent: spacing must be finite and above 0");
@@ -45,11 +43,16 @@ Vector3d Detent::force(const Felt& felt, FieldState& state) noexcept {
   const double s = within(felt.hand.position);
   state.depth = std::abs(std::remainder(s, parameters_.spacing));
   const double size = -felt.shares.stiffness * parameters_.peak * std::sin(wave_ * s);
-  const double speed = std::abs(direction_.dot(speed_.next(felt.hand.velocity)));
-  if (speed > kPassed * parameters_.spacing) {
+  const double ahead = std::abs(direction_.dot(way_.next(felt.hand.velocity)));
+  if (passing_.look(ahead / parameters_.spacing, period_)) {
     state.stimulus = size * direction_;
   }
   return size * direction_;
+}
+
+void Detent::adopt(const Detent& before) noexcept {
+  way_.adopt(before.way_);
+  passing_ = before.passing_;
 }
 
 double Detent::energy(const Vector3d& p) const noexcept {

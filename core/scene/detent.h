@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/scene/field_state.h"
-#include "core/scene/low_pass.h"
+#include "core/scene/own_way.h"
 
 namespace haptrial::scene {
 
@@ -28,9 +28,9 @@ struct DetentParameters {
 class Detent {
  public:
   Detent(const DetentParameters& parameters, const Setting& setting);
-  void start(const PointState& hand) noexcept { speed_.start(hand.velocity); }
+  void start(const PointState& hand) noexcept { way_.start(hand.velocity); }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
-  void adopt(const Detent& before) noexcept { speed_.adopt(before.speed_); }
+  void adopt(const Detent& before) noexcept;
   double energy(const Eigen::Vector3d& p) const noexcept;  // [J]
 
  private:
@@ -38,8 +38,10 @@ class Detent {
 
   DetentParameters parameters_;
   Eigen::Vector3d direction_;
-  double wave_;    // 2 pi / spacing [1/m]
-  LowPass speed_;  // of the hand as it moves on, without what shakes it [m/s]
+  double wave_;  // 2 pi / spacing [1/m]
+  OwnWay way_;
+  Passing passing_;
+  double period_;  // of a tick [s]
 };
 
 struct ClickParameters {

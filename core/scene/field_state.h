@@ -35,13 +35,13 @@ struct Felt {
 struct FieldState {
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the hand, limited and faded [N]
   /// The part of `force` whose course in time is itself the stimulus: a vibration, a tap, a pulse,
-  /// a relief under the hand. Laws set it; the scene limits and fades it with the force. [N]
+  /// ridges that the hand passes. Laws set it; the scene limits and fades it with the force. [N]
   Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // as the field filtered it [m/s]
   Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};   // of a surface, towards the free side
   /// Surfaces and clicks: how deep the hand is in. Spring, channel, plane: how far it is from them.
-  /// Mover: the way still to go; path: to the point that travels it; curve: to the curve. Grating, texture: the height
-  /// under the hand. Friction: the bristle's deflection. [m]
+  /// Mover: the way still to go; path: to the point that travels it; curve: to the curve. Grating,
+  /// texture: the height under the hand. Friction: the bristle's deflection. [m]
   double depth{0.0};
   Eigen::Vector3d proxy{Eigen::Vector3d::Zero()};  // of a solid, in W [m]
   double weight{0.0};                              // of the fade, 0 to 1

@@ -76,6 +76,10 @@ void Grating::add(const Vector3d& p, double weight, ReliefHere& relief,
                 relief, state);
 }
 
+double Grating::ridges(const Vector3d& way) const noexcept {
+  return std::abs(wave_.dot(way)) / kTwoPi;
+}
+
 double Grating::steepest() const noexcept {
   const double sine = amplitude_ * wave_.norm();
   return rounded_ ? sine * kRoundedSharpness / std::tanh(kRoundedSharpness) : sine;
@@ -111,6 +115,14 @@ Texture::Texture(const TextureParameters& p, const Setting&) {
     steepest_ += amplitude_ * wave;
     most_curved_ += amplitude_ * wave * wave;
   }
+}
+
+double Texture::ridges(const Vector3d& way) const noexcept {
+  double squares = 0.0;
+  for (const Vector3d& wave : waves_) {
+    squares += wave.dot(way) * wave.dot(way);
+  }
+  return std::sqrt(squares / kWaves) / kTwoPi;
 }
 
 void Texture::add(const Vector3d& p, double weight, ReliefHere& relief,

@@ -39,6 +39,8 @@ class Grating {
   void add(const Eigen::Vector3d& p, double weight, ReliefHere& relief,
            FieldState& state) const noexcept;
 
+  /// Ridges along a way [m].
+  double ridges(const Eigen::Vector3d& way) const noexcept;
   double steepest() const noexcept;     // largest |∇h|
   double most_curved() const noexcept;  // bound of the second derivative of h [1/m]
 
@@ -73,6 +75,9 @@ class Texture {
   void add(const Eigen::Vector3d& p, double weight, ReliefHere& relief,
            FieldState& state) const noexcept;
 
+  /// Ridges along a way [m], on the mean: a sum of sines has as many as one of their root mean
+  /// square frequency (Rice 1945).
+  double ridges(const Eigen::Vector3d& way) const noexcept;
   double steepest() const noexcept { return steepest_; }
   double most_curved() const noexcept { return most_curved_; }
 

@@ -87,8 +87,10 @@ Vector3d RigidObject::push(const contact::Contact& contact, const Felt& felt,
   const double depth = parameters_.scale * contact.depth + relief_.height - relief_.highest;  // e
   state.depth = std::max(depth, 0.0);
   state.contact = depth > 0.0;
-  if (!state.contact) {
+  if (relief_.passes) {
     state.stimulus = -whole;
+  }
+  if (!state.contact) {
     return Vector3d::Zero();
   }
   const Vector3d lean = normal - relief_.slope;  // g
@@ -98,7 +100,9 @@ Vector3d RigidObject::push(const contact::Contact& contact, const Felt& felt,
                         damping * parameters_.gains.damping * lean.dot(felt.hand.velocity);
   state.limited = wanted > most;
   const Vector3d force = std::clamp(wanted, 0.0, most) * lean + dragged;
-  state.stimulus = force - whole;
+  if (relief_.passes) {
+    state.stimulus += force;
+  }
   return force;
 }
 

@@ -91,6 +91,7 @@ struct Scene::Part {
   bool begins{false};
   double time{0.0};
   ReliefHere relief{};  // of a surface
+  Passing passing{};    // of a relief
   FieldState state{};
 
   bool acts() const noexcept { return fade.on() || !fade.over(); }
@@ -108,7 +109,7 @@ struct Scene::Part {
   }
 };
 
-Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate) {
+Scene::Scene(const std::vector<Field>& fields, double rate) : period_(1.0 / rate), way_(rate) {
   require(std::isfinite(rate) && rate > 0.0, "Scene: rate must be finite and above 0");
   require(fields.size() <= kMostFields, "Scene: at most 64 fields");
   parts_.reserve(fields.size());
@@ -167,6 +168,7 @@ void Scene::restart_with(std::uint64_t mask) noexcept {
 void Scene::start_from(const Scene& before) noexcept {
   before_ = before.before_;
   share_ = before.share_;
+  way_.adopt(before.way_);
   const std::size_t shared = std::min(parts_.size(), before.parts_.size());
   for (std::size_t i = 0; i < shared; ++i) {
     Part& part = parts_[i];
@@ -178,6 +180,7 @@ void Scene::start_from(const Scene& before) noexcept {
     part.begins = old.begins;
     part.time = old.time;
     part.state = old.state;
+    part.passing = old.passing;
     std::visit(
         [&](auto& law) {
           using Same = std::decay_t<decltype(law)>;
@@ -189,7 +192,7 @@ void Scene::start_from(const Scene& before) noexcept {
   }
 }
 
-void Scene::lay_reliefs(const Vector3d& p) noexcept {
+void Scene::lay_reliefs(const Vector3d& p, const Vector3d& ahead) noexcept {
   for (const std::size_t i : surfaces_) {
     parts_[i].relief = {};
   }
@@ -199,10 +202,14 @@ void Scene::lay_reliefs(const Vector3d& p) noexcept {
       continue;
     }
     ReliefHere& relief = parts_[part.on].relief;
+    const auto lay = [&](const auto& law) {
+      law.add(p, part.fade.weight(), relief, part.state);
+      relief.passes |= part.passing.look(law.ridges(ahead), period_);
+    };
     if (const auto* grating = std::get_if<Grating>(&part.law)) {
-      grating->add(p, part.fade.weight(), relief, part.state);
+      lay(*grating);
     } else if (const auto* texture = std::get_if<Texture>(&part.law)) {
-      texture->add(p, part.fade.weight(), relief, part.state);
+      lay(*texture);
     }
   }
   for (const std::size_t i : surfaces_) {
@@ -283,7 +290,7 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
     }
   }
   before_ = hand.position;
-  lay_reliefs(hand.position);
+  lay_reliefs(hand.position, way_.next(hand.velocity));
   const Felt common{hand, 0.0, nullptr, shares, channels};
   Vector3d sum = Vector3d::Zero();
   for (const std::size_t i : forces_) {
@@ -327,7 +334,7 @@ const deformable::BodyTouch* Scene::touch(std::size_t field) const noexcept {
 }
 
 double Scene::energy(const Vector3d& p) noexcept {
-  lay_reliefs(p);
+  lay_reliefs(p, Vector3d::Zero());
   double sum = 0.0;
   for (const Part& part : parts_) {
     std::visit(

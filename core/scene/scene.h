@@ -9,6 +9,7 @@
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
 #include "core/scene/field.h"
+#include "core/scene/own_way.h"
 
 namespace haptrial::scene {
 
@@ -77,13 +78,15 @@ class Scene {
   struct Part;
   void feel(Part& part, const Felt& felt) noexcept;
   void store(Part& part, double share) noexcept;
-  void lay_reliefs(const Eigen::Vector3d& p) noexcept;
+  /// @param ahead  of the hand (OwnWay) [m]
+  void lay_reliefs(const Eigen::Vector3d& p, const Eigen::Vector3d& ahead) noexcept;
 
   std::vector<Part> parts_;
   std::vector<std::size_t> reliefs_;
   std::vector<std::size_t> surfaces_;
   std::vector<std::size_t> forces_;  // surfaces, then what may lie on them: all but reliefs
   double period_;
+  OwnWay way_;
   Eigen::Vector3d before_{Eigen::Vector3d::Zero()};  // the hand a tick ago [m]
   double share_{1.0};                                // of stiffness, a tick ago
   Eigen::Vector3d ended_{Eigen::Vector3d::Zero()};   // [N]

@@ -65,7 +65,7 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
   state.contact = depth > 0.0;
   state.depth = std::max(0.0, depth);
   touch_ = {here.normal, 0.0, -here.normal.dot(felt.hand.velocity)};
-  if (relief_.highest > 0.0) {
+  if (relief_.passes) {
     state.stimulus = -flat_force(here, felt);
   }
   if (!state.contact) {
@@ -78,7 +78,7 @@ Vector3d Surface::force(const Felt& felt, FieldState& state) noexcept {
   const double pushed = std::clamp(wanted, 0.0, most);
   state.limited = wanted > most;
   const Vector3d force = pushed * lean;
-  if (relief_.highest > 0.0) {
+  if (relief_.passes) {
     state.stimulus += force;
   }
   touch_.pressing = std::max(force.dot(here.normal), 0.0);

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/scene/scene.h"
 #include "tests/core/scene/spectrum.h"
 
 namespace haptrial::scene::relief_test {
@@ -104,6 +107,76 @@ TEST(ReliefTest, TheUsualSlopeAndCurvatureOfATextureAreItsRootMeanSquares) {
   EXPECT_NEAR(std::sqrt(slopes / kPlaces), bound.usual_slope, 0.03 * bound.usual_slope);
   EXPECT_NEAR(std::sqrt(curvatures / kPlaces), bound.usual_curvature, 0.03 * bound.usual_curvature);
   EXPECT_LT(bound.usual_slope, 0.3 * bound.slope);
+}
+
+/// A wall of 800 N/m with ridges of 0.2 mm every 2 mm, and a hand 3 mm deep whose place along them
+/// is `x`. @returns the ticks on which the ridges count as a stimulus
+std::vector<bool> meant_on(const std::function<double(double)>& x) {
+  constexpr double kDt = 1e-3;
+  const Field wall{"floor", SurfaceParameters{HalfSpace{}, false, {800.0, 0.0}}, 10.0, 0.0, 0.0};
+  const GratingParameters ridges{"floor", Vector3d::UnitX(), 2e-4, 0.002};
+  Scene scene({wall, {"ridges", ridges, 10.0, 0.0, 0.0}}, 1.0 / kDt);
+  scene.switch_to(Scene::kAll);
+  std::vector<bool> meant(1000);
+  for (std::size_t i = 0; i < meant.size(); ++i) {
+    const double t = kDt * static_cast<double>(i);
+    const PointState hand{{x(t), -0.003, 0.0}, {(x(t) - x(t - kDt)) / kDt, 0.0, 0.0}};
+    const Vector3d force = scene.force(hand);
+    meant[i] = !scene.state(0).stimulus.isZero(0.0);
+    if (meant[i]) {
+      EXPECT_LT((scene.state(0).stimulus - (force - Vector3d(0.0, 2.4, 0.0))).norm(), 1e-12);
+    }
+  }
+  return meant;
+}
+
+TEST(ReliefTest, AHandThatSwingsInAGrooveIsNoStimulus) {
+  for (const double frequency : {4.0, 8.0, 15.0, 33.0, 84.0}) {
+    const std::vector<bool> meant = meant_on([&](double t) {
+      const double grown = std::clamp(t / 0.2, 0.0, 1.0);
+      return 9e-4 * grown * std::sin(2.0 * std::numbers::pi * frequency * t);
+    });
+    EXPECT_EQ(std::ranges::count(meant, true), 0) << frequency << " Hz";
+  }
+  const std::vector<bool> still = meant_on([](double) { return 0.0; });
+  EXPECT_EQ(std::ranges::count(still, true), 0);
+}
+
+TEST(ReliefTest, RidgesThatAHandPassesAreOneFromTheFirstOn) {
+  for (const double a_second : {8.0, 15.0, 50.0, 100.0}) {
+    const std::vector<bool> meant = meant_on([&](double t) { return 0.002 * a_second * t; });
+    const auto first = static_cast<std::ptrdiff_t>(std::ceil(1000.0 / a_second));
+    EXPECT_EQ(std::count(meant.begin() + first, meant.end(), false), 0) << a_second << " a second";
+  }
+}
+
+TEST(ReliefTest, AHandThatTurnsBackStillPassesAndOneThatStopsDoesNot) {
+  const std::vector<bool> turns =
+      meant_on([](double t) { return 0.02 * std::sin(std::numbers::pi * t); });
+  EXPECT_EQ(std::count(turns.begin() + 100, turns.end(), false), 0) << "it turns after 0.5 s";
+  const std::vector<bool> stops = meant_on([](double t) { return 0.1 * std::min(t, 0.3); });
+  EXPECT_TRUE(stops[400]);
+  EXPECT_FALSE(stops[999]);
+}
+
+/// The ups through the mean height along 100 lines of a metre.
+TEST(ReliefTest, ATextureHasAsManyRidgesAsItRises) {
+  const Texture texture({"floor", Vector3d::UnitY(), 1e-4, 100.0, 400.0, 5}, kSetting);
+  for (const Vector3d& way : {Vector3d(1.0, 0.0, 0.0), Vector3d(0.6, 0.0, 0.8)}) {
+    int rises = 0;
+    for (int line = 0; line < 100; ++line) {
+      double before = 0.0;
+      for (int i = 0; i <= 5000; ++i) {
+        ReliefHere relief;
+        FieldState state;
+        texture.add(2e-4 * i * way + 0.37 * line * Vector3d(-way.z(), 0.0, way.x()), 1.0, relief,
+                    state);
+        rises += before < 0.0 && relief.height >= 0.0 ? 1 : 0;
+        before = relief.height;
+      }
+    }
+    EXPECT_NEAR(texture.ridges(way), rises / 100.0, 0.05 * texture.ridges(way));
+  }
 }
 
 }  // namespace

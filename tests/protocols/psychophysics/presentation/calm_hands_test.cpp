@@ -13,6 +13,7 @@
 
 #include "core/base/random.h"
 #include "core/control/pd_controller.h"
+#include "core/control/swing_counter.h"
 #include "core/device/virtual_device.h"
 #include "core/scene/scene.h"
 #include "protocols/interface/device_set.h"
@@ -130,6 +131,7 @@ PassOutput feel(scene::Scene& scene, const device::DeviceReading& reading,
   out.force = control::saturate(scene.force(reading.tool, reading.shares), limits().max_force);
   for (std::size_t i = 0; i < scene.size(); ++i) {
     const scene::FieldState& state = scene.state(i);
+    out.intent.stimulus += state.stimulus;
     out.intent.stored += state.stored;
     out.intent.added += state.added;
     if ((gives_way >> i & 1) == 0) {
@@ -162,6 +164,32 @@ TEST_P(CalmHandsTest, NothingThatAHandDoesIsTakenForAFault) {
     ASSERT_EQ(devices.fault(), device::Fault::kNone)
         << device::describe(devices.fault()) << ", after " << tick << " ms";
     devices.write();
+  }
+}
+
+/// Ridges so fine that no hand damps its swing in a groove: their curvature of 31,600 1/m times a
+/// press of 3 N is 95 N/mm. Hands that press and rest are not left to it.
+TEST(GrooveTest, AHandThatSwingsInAGrooveIsSeen) {
+  scene::GratingParameters ridges{"wall"};
+  ridges.amplitude = 0.0002;
+  ridges.period = 0.0005;
+  for (const double mass : {0.05, 0.3, 0.8}) {
+    test::HandOnHandle hand(mass);
+    hand.press = 3.0;
+    device::VirtualDevice device({}, hand, kRate);
+    DeviceSet devices({{&device, device::EnvelopeLimits{}}});
+    scene::Scene scene({{"wall", floor_of(1000.0, 2.0).kind, 8.0}, {"ridges", ridges, 8.0}}, kRate);
+    scene.switch_to(scene::Scene::kAll);
+    double longest = 0.0;
+    control::SwingCounter swings(2.0, 0.06);
+    for (int tick = 0; tick < 3000 && devices.fault() == device::Fault::kNone; ++tick) {
+      devices.read({}, 1.0 / kRate);
+      devices.limit(feel(scene, devices.readings()[0], ~0u), {}, 1.0 / kRate);
+      devices.write();
+      const auto train = swings.look(devices.forces()[0], Vector3d::Zero(), 1.0 / kRate);
+      longest = std::max(longest, train.lasted);
+    }
+    EXPECT_LT(longest, 0.3) << mass << " kg, " << device::describe(devices.fault());
   }
 }
 
