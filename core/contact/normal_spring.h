@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <utility>
 
 #include "core/contact/renderer.h"
 
@@ -20,16 +21,23 @@ inline double damper_share(double depth) noexcept {
 ///
 /// s is the damping share, 1 unless the handle does not carry the damping.
 /// It pushes and never pulls. u follows the readings with a time constant of 2 ms: the last step of
-/// an encoder over a tick is mostly noise.
+/// an encoder over a tick is mostly noise. It begins at 0, whatever the depth: a hand that is in
+/// contact when the spring starts did not come from the surface in one tick.
 class NormalSpring {
  public:
   explicit NormalSpring(const RendererOptions& options)
       : stiffness_(options.stiffness), damping_(options.damping), unit_(options.unit) {}
 
-  void start() noexcept { before_ = rate_ = 0.0; }
+  void start() noexcept {
+    rate_ = 0.0;
+    begins_ = true;
+  }
   void set_damping_share(double share) noexcept { share_ = share; }
   /// @param depth  0 when there is no contact [m]  @returns the size of the force [N]
   double force(double depth, double period) noexcept {
+    if (std::exchange(begins_, false)) {
+      before_ = depth;
+    }
     if (period > 0.0) {
       constexpr double kFilter = 2e-3;  // [s]
       rate_ += period / (kFilter + period) * ((depth - before_) / period - rate_);
@@ -45,6 +53,7 @@ class NormalSpring {
   double share_{1.0};  // s
   double before_{0.0};
   double rate_{0.0};  // u [m/s]
+  bool begins_{true};
 };
 
 }  // namespace haptrial::contact

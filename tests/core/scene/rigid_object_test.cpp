@@ -121,6 +121,27 @@ TEST(RigidObjectTest, ANewSceneGoesOnWhereTheProxyWas) {
   EXPECT_LT((goes_on - stuck).norm(), 1e-3 * stuck.norm());
 }
 
+/// The next interval has the same object: its damper takes no way in that the hand did not make.
+TEST(RigidObjectTest, AHandThatRestsIsNotKickedByANewScene) {
+  for (const double damping : {2.0, 5.0, 20.0, 80.0}) {
+    RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
+    p.gains.damping = damping;
+    const PointState rests{p.pose.position + p.pose.orientation * Vector3d(0.0, 0.0112, 0.0),
+                           Vector3d::Zero()};
+    Scene first({placed(p)}, kRate);
+    first.switch_to(Scene::kAll);
+    const Vector3d spring = 700.0 * 0.0038 * (p.pose.orientation * Vector3d::UnitY());
+    Scene second({placed(p)}, kRate);
+    for (int i = 0; i < 100; ++i) {
+      EXPECT_LT((first.force(rests) - spring).norm(), 1e-6) << damping << " N·s/m, tick " << i;
+    }
+    second.start_from(first);
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_LT((second.force(rests) - spring).norm(), 1e-6) << damping << " N·s/m, tick " << i;
+    }
+  }
+}
+
 TEST(RigidObjectTest, RidgesLieBelowTheMesh) {
   const RigidObjectParameters p = box_of({0.04, 0.03, 0.05});
   const Vector3d x = p.pose.orientation * Vector3d::UnitX();
