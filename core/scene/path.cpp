@@ -27,12 +27,20 @@ stimulus::SpatialTrajectory travelled(const PathParameters& p) {
 PathGuide::PathGuide(const PathParameters& p, const Setting&)
     : path_(travelled(p)), controller_(p.gains) {}
 
+/// The mean lies before `time` at the beginning of the path and behind it at the end, so that it
+/// begins and ends at 0.
+Eigen::Vector3d PathGuide::mean_velocity(double time) const noexcept {
+  const double travelled = std::clamp(time / path_.duration(), 0.0, 1.0);
+  const double from = time - (1.0 - travelled) * kSpeedBlend;
+  const double to = from + kSpeedBlend;
+  return (path_.at(to).position - path_.at(from).position) / kSpeedBlend;
+}
+
 Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
   PointState target = path_.at(felt.time);
-  const double left = path_.duration() - felt.time;
-  target.velocity *= std::clamp(std::min(felt.time, left) / kSpeedBlend, 0.0, 1.0);
+  target.velocity = mean_velocity(felt.time);
   state.depth = (target.position - felt.hand.position).norm();
-  state.done = left <= 0.0;
+  state.done = felt.time >= path_.duration();
   return controller_.force(target, felt.hand, felt.shares);
 }
 

@@ -25,8 +25,9 @@ struct PathParameters {
 };
 
 /// Guides the hand along a path: a spring and damper to a point that travels the lines between
-/// `points` at constant speed, then rests at the last one. The damper takes the point's speed on
-/// and off over 80 ms at the ends. Active. Source: Morris 2006, §4.2.4.
+/// `points` at constant speed, then rests at the last one. The damper acts on the mean of the
+/// point's velocity over 80 ms, which makes no step at the ends and at corners. Active. Source:
+/// Morris 2006, §4.2.4.
 class PathGuide {
  public:
   /// @throws std::invalid_argument naming the parameter that breaks its bound
@@ -34,6 +35,8 @@ class PathGuide {
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
 
  private:
+  Eigen::Vector3d mean_velocity(double time) const noexcept;
+
   stimulus::SpatialTrajectory path_;
   control::PdController controller_;
 };

@@ -521,9 +521,39 @@ TEST(PathGuideTest, TheDamperComesAndGoesWithTheSpeed) {
     return guide.force({{{0.035 * time, 0.0, 0.0}, Vector3d::Zero()}, time, nullptr}, state).x();
   };
   EXPECT_NEAR(on_path(0.0), 0.0, 1e-12);
-  EXPECT_NEAR(on_path(0.04), 0.5 * 0.035, 1e-9);
+  EXPECT_NEAR(on_path(0.04), 0.5 * 0.035, 0.03 * 0.035);
   EXPECT_NEAR(on_path(1.0), 0.035, 1e-9);
-  EXPECT_NEAR(on_path(1.96), 0.5 * 0.035, 1e-9);
+  EXPECT_NEAR(on_path(1.96), 0.5 * 0.035, 0.03 * 0.035);
+  EXPECT_NEAR(on_path(2.0), 0.0, 1e-12);
+}
+
+/// The gains of the force study round a square, back along a line, and there faster: a hand that
+/// rests feels the spring's pull and the damper's go on without a step.
+TEST(PathGuideTest, TheForceDoesNotJumpAtACorner) {
+  const std::vector<Vector3d> square{
+      kOrigin, {0.03, 0.0, 0.0}, {0.03, 0.0, 0.03}, {0.0, 0.0, 0.03}, kOrigin};
+  const std::vector<Vector3d> back_and_forth{
+      kOrigin, {0.03, 0.0, 0.0}, {-0.03, 0.0, 0.0}, {0.03, 0.0, 0.0}};
+  for (const PathParameters& p : {PathParameters{square, 4.0, {900.0, 100.0}},
+                                  PathParameters{back_and_forth, 1.5, {300.0, 40.0}},
+                                  PathParameters{kCorner, 0.05, {0.0, 20.0}}}) {
+    PathGuide guide(p, kSetting);
+    FieldState state;
+    double length = 0.0;
+    for (std::size_t i = 1; i < p.points.size(); ++i) {
+      length += (p.points[i] - p.points[i - 1]).norm();
+    }
+    const double speed = length / p.duration;
+    // At the fastest the velocity turns round, by twice its size, while the mean passes a corner.
+    const double passes = 0.08 / (1.0 + 0.08 / p.duration);  // [s]
+    const double most = 1.001e-3 * speed * (p.gains.stiffness + 2.0 * p.gains.damping / passes);
+    Vector3d before = Vector3d::Zero();
+    for (int i = 0; 1e-3 * i < p.duration + 0.2; ++i) {
+      const Vector3d force = guide.force({{}, 1e-3 * i, nullptr}, state);
+      ASSERT_LT((force - before).norm(), most) << p.duration << " s, tick " << i;
+      before = force;
+    }
+  }
 }
 
 /// A mass with the hand's damping, led by the study's gains.
