@@ -1,6 +1,14 @@
 #include "core/control/curve_constraint.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace haptrial::control {
+namespace {
+
+constexpr double kHeldBeyond = 1e-3;  // an end, until the damper acts whole along the curve [m]
+
+}  // namespace
 
 using Eigen::Vector3d;
 
@@ -21,13 +29,12 @@ PointState CurveConstraint::follow(const PointState& tool) noexcept {
   target.position = motion_.pose * place.position;
   const Vector3d arm = target.position - motion_.pose.translation();
   target.velocity = motion_.velocity + motion_.angular_velocity.cross(arm);
-  // Beyond an end the place does not move along with the tool.
   const double outward = direction_.dot(tool.position - target.position);
   const bool before = place.arc <= 0.0 && outward < 0.0;
   const bool after = place.arc >= tracker_.curve().length() && outward > 0.0;
-  if (!before && !after) {
-    target.velocity += direction_.dot(tool.velocity - target.velocity) * direction_;
-  }
+  const double beyond = before || after ? std::abs(outward) : 0.0;
+  const double free = 1.0 - std::min(beyond / kHeldBeyond, 1.0);
+  target.velocity += free * direction_.dot(tool.velocity - target.velocity) * direction_;
   return target;
 }
 

@@ -21,7 +21,8 @@ struct CurveMotion {
 ///
 /// The spring is minus the gradient of ½ k (distance)², so it does no work over a closed path and
 /// points across the curve by itself; the damper takes energy only. Beyond an end the tool is held
-/// to the end's point from every side. Source: Morris 2006, §6.2.2.
+/// to the end's point from every side; along the curve the damper grows over the first millimetre,
+/// so that it does not strike the hand. Source: Morris 2006, §6.2.2.
 class CurveConstraint {
  public:
   /// @param curve  in C; outlives the constraint.

@@ -137,6 +137,25 @@ TEST(CurveConstraintTest, BeyondAnEndItHoldsToThePoint) {
   EXPECT_NEAR(constraint.force({{0.0005, 0.0, 0.0}, {0.05, 0.0, 0.0}}).x(), 0.0, 1e-12);
 }
 
+/// A hand that passes an end at 0.12 m/s, there and back: 1 mm takes it 8 ms.
+TEST(CurveConstraintTest, TheDamperAlongTheCurveGrowsBeyondAnEnd) {
+  const SampledCurve curve(line(0.016));
+  CurveConstraint constraint(curve, {900.0, 80.0});
+  constraint.start_at(0.015);
+  const auto along = [&](double beyond, double speed) {
+    return constraint.force({{0.016 + beyond, 0.0, 0.0}, {speed, 0.0, 0.0}}).x();
+  };
+  EXPECT_NEAR(along(0.0005, 0.12), -900.0 * 0.0005 - 0.5 * 80.0 * 0.12, 1e-9);
+  for (const double speed : {0.12, -0.12}) {
+    double before = along(-0.12e-3 * 10, speed);
+    for (int i = -9; i <= 20; ++i) {
+      const double force = along(0.12e-3 * i, speed);
+      ASSERT_LT(std::abs(force - before), 0.12 * (80.0 * 0.12 + 1.0)) << i;
+      before = force;
+    }
+  }
+}
+
 TEST(CurveConstraintTest, AMovingCurveIsTheSameSeenFromIt) {
   RandomStream random(2, "moving");
   const SampledCurve curve(loop(2000));
