@@ -49,6 +49,10 @@ Eigen::Vector3d tutoring_force(const TutoringGains& gains, const Lead& lead, con
                                const PointState& own, const Eigen::Vector3d& own_force,
                                const control::GainShares& shares = {}) noexcept;
 
+/// Time over which a played motion that waits or is over comes to rest, as a damper would strike
+/// the hand if its velocity changed in a tick [s].
+inline constexpr double kTimeToRest = 0.08;
+
 /// The authority as it goes from one hand to the other: at an even rate, never by a step.
 class Handover {
  public:

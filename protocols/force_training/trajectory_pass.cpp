@@ -167,8 +167,8 @@ PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
   if (run_lead() != RunLead::kGuided) {
     if (!shows_expert()) {
       along_ = time_;
-    } else if (time_ > 0.0 && !paused_) {
-      along_ += parameters_.tutoring.speed * dt_;
+    } else if (time_ > 0.0) {
+      along_ += pace_.share() * parameters_.tutoring.speed * dt_;
     }
     return released(tool);
   }
@@ -187,7 +187,8 @@ PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
 PassOutput TrajectoryPass::tick(const Readings& readings, double dt) noexcept {
   const PointState& tool = readings[0].tool;
   dt_ = dt;
-  paused_ = waits_for_hand(readings[0]);
+  pace_.ask(waits_for_hand(readings[0]) ? 0.0 : 1.0);
+  pace_.step(dt);
   const PointState target = guide_target(tool, dt);
   PassOutput out = output(readings[0], target);
   target_ = target.position;
@@ -212,7 +213,7 @@ Eigen::Vector3d TrajectoryPass::expert_place(double progress) const noexcept {
 tutoring::Partner TrajectoryPass::expert() const noexcept {
   tutoring::Partner expert;
   expert.tool = stimulus_.path.at(along_);
-  expert.tool.velocity *= paused_ ? 0.0 : parameters_.tutoring.speed;
+  expert.tool.velocity *= pace_.share() * parameters_.tutoring.speed;
   expert.force.y() = stimulus_.force.at(along_);
   return expert;
 }

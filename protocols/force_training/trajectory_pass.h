@@ -141,9 +141,9 @@ class TrajectoryPass : public Pass {
   double along_{0.0};                                // the path during the run, at its speed [s]
   Eigen::Vector3d target_{Eigen::Vector3d::Zero()};  // where the guide was last [m]
   control::MinimumJerkMove move_;
-  std::optional<CurveGuide> guide_;  // where the participant sets the pace
-  tutoring::Handover handover_;      // from the guide to what leads the run
-  bool paused_{false};               // the expert waits
+  std::optional<CurveGuide> guide_;                      // where the participant sets the pace
+  tutoring::Handover handover_;                          // from the guide to what leads the run
+  tutoring::Handover pace_{tutoring::kTimeToRest, 1.0};  // share of the expert's speed
   double dt_{0.0};
   ExpertLog* log_{nullptr};
   std::uint64_t sequence_{0};

@@ -91,12 +91,15 @@ ModelMotion read_model(const TutorChoice& choice) {
   return motion;
 }
 
+void Playback::step(double dt) noexcept {
+  time_ = std::min(time_ + pace_.share() * speed_ * dt, motion_->duration());
+  pace_.ask(waits_ || over() ? 0.0 : 1.0);
+  pace_.step(dt);
+}
+
 tutoring::Partner Playback::now() const noexcept {
   const std::vector<tutoring::Partner>& ticks = motion_->ticks;
-  if (over()) {
-    return {{ticks.back().tool.position, Eigen::Vector3d::Zero()}, Eigen::Vector3d::Zero()};
-  }
-  const double at = time_ * motion_->rate;
+  const double at = std::min(time_ * motion_->rate, static_cast<double>(ticks.size() - 1));
   const auto i = static_cast<std::size_t>(at);
   const double part = at - static_cast<double>(i);
   const tutoring::Partner& a = ticks[i];
@@ -104,7 +107,7 @@ tutoring::Partner Playback::now() const noexcept {
   tutoring::Partner now;
   now.tool.position = (1.0 - part) * a.tool.position + part * b.tool.position;
   now.tool.velocity =
-      (waits_ ? 0.0 : speed_) * ((1.0 - part) * a.tool.velocity + part * b.tool.velocity);
+      pace_.share() * speed_ * ((1.0 - part) * a.tool.velocity + part * b.tool.velocity);
   now.force = (1.0 - part) * a.force + part * b.force;
   return now;
 }

@@ -41,11 +41,12 @@ class Playback {
       : motion_(&motion), speed_(speed), time_(from) {}
 
   /// State between two recorded ticks: places and forces on the line between them; a slower
-  /// playback has smaller velocities and the same forces. After its end it stands still without a
+  /// playback has smaller velocities and the same forces. After its end it stands with the last
   /// force.
   tutoring::Partner now() const noexcept;
-  void step(double dt) noexcept { time_ += waits_ ? 0.0 : speed_ * dt; }
-  /// Whether it stands where it is, from now on: without velocity, with the force of that place.
+  void step(double dt) noexcept;
+  /// Whether it stands with the force of its place. It comes to rest, and up to its speed again,
+  /// over kTimeToRest, so that a damper takes no step.
   void wait(bool waits) noexcept { waits_ = waits; }
   bool over() const noexcept { return time_ >= motion_->duration(); }
   double time() const noexcept { return time_; }  // in the motion [s]
@@ -54,6 +55,7 @@ class Playback {
   const ModelMotion* motion_;
   double speed_;
   double time_;
+  tutoring::Handover pace_{tutoring::kTimeToRest, 1.0};  // share of the speed
   bool waits_{false};
 };
 

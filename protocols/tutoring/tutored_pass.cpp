@@ -25,13 +25,11 @@ bool TutoredPass::wants_attention() noexcept {
 PassOutput TutoredPass::tick(const Readings& readings, double dt) noexcept {
   PassOutput out = inner_->tick(readings, dt);
   const bool runs = out.stage == record::Stage::kRun && !playback_.over();
-  playback_.wait(asks_to_wait(*options_, readings[0]));
+  playback_.wait(!runs || asks_to_wait(*options_, readings[0]));
   handover_.ask(runs ? 1.0 : 0.0);
   handover_.step(dt);
   if (runs || handover_.share() > 0.0) {
     lead(out, readings[0]);
-  }
-  if (runs) {
     playback_.step(dt);
   }
   ++sequence_;

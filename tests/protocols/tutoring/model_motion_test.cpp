@@ -50,26 +50,37 @@ TEST(PlaybackTest, AtHalfTheSpeedPlacesAndForcesAreTheSameAndVelocitiesHalf) {
     time += 0.5e-3;
   }
   EXPECT_NEAR(time, 1.0, 1e-3);
-  EXPECT_TRUE(playback.now().force.isZero(0.0));
-  EXPECT_TRUE(playback.now().tool.velocity.isZero(0.0));
-  EXPECT_EQ(playback.now().tool.position.x(), 1.0);
+  double velocity = playback.now().tool.velocity.x();
+  EXPECT_NEAR(velocity, 1.0, 0.02);
+  for (int i = 0; i < 80; ++i) {
+    playback.step(1e-3);
+    EXPECT_EQ(playback.now().force.y(), 1.0);
+    EXPECT_EQ(playback.now().tool.position.x(), 1.0);
+    EXPECT_NEAR(playback.now().tool.velocity.x(), velocity, 1.0 / 79.0) << "without a step";
+    velocity = playback.now().tool.velocity.x();
+  }
+  EXPECT_NEAR(velocity, 0.0, 1e-12);
 }
 
-TEST(PlaybackTest, WhileItWaitsItStandsAndItsForceStays) {
+TEST(PlaybackTest, ItComesToRestWithoutAStepAndWhileItWaitsItsForceStays) {
   const ModelMotion motion = accelerating();
   Playback playback(motion, 1.0, 0.5);
-  const tutoring::Partner before = playback.now();
   playback.wait(true);
+  double velocity = playback.now().tool.velocity.x();
   for (int i = 0; i < 100; ++i) {
     playback.step(1e-3);
-    ASSERT_EQ(playback.now().tool.position, before.tool.position);
-    ASSERT_TRUE(playback.now().tool.velocity.isZero(0.0));
-    ASSERT_EQ(playback.now().force, before.force);
+    ASSERT_LE(playback.now().tool.velocity.x(), velocity + 2e-3);
+    ASSERT_GE(playback.now().tool.velocity.x(), velocity - 0.015);
+    velocity = playback.now().tool.velocity.x();
   }
+  EXPECT_EQ(velocity, 0.0);
+  EXPECT_NEAR(playback.time(), 0.5 + 0.5 * 0.081, 1e-9);
+  EXPECT_NEAR(playback.now().force.y(), playback.time(), 1e-9);
   playback.wait(false);
-  EXPECT_EQ(playback.now().tool.velocity, before.tool.velocity);
-  playback.step(1e-3);
-  EXPECT_NEAR(playback.time(), 0.501, 1e-12);
+  for (int i = 0; i < 100; ++i) {
+    playback.step(1e-3);
+  }
+  EXPECT_NEAR(playback.now().tool.velocity.x(), 2.0 * playback.time(), 1e-9);
 }
 
 /// A pass that runs for a second.
@@ -101,7 +112,7 @@ TEST(TutoredPassTest, ARecordedRunWaitsWhileThePauseIsAskedForInAnyProtocol) {
   for (int i = 0; pass.state() == PassState::kRunning; ++i) {
     device::DeviceReading reading;
     reading.buttons = i >= 200 && i < 350 ? 2 : 1;
-    reading.keys = i >= 400 && i < 450 ? kPauseBit : 0;
+    reading.keys = i >= 450 && i < 500 ? kPauseBit : 0;
     pass.tick(reading, 1e-3);
   }
   std::vector<record::TutoringRow> rows;
@@ -109,10 +120,43 @@ TEST(TutoredPassTest, ARecordedRunWaitsWhileThePauseIsAskedForInAnyProtocol) {
     rows.insert(rows.end(), some.begin(), some.end());
   });
   ASSERT_EQ(rows.size(), 1000u);
+  double before = 1e-3;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    const bool waits = (i > 200 && i <= 350) || (i > 400 && i <= 450);
-    ASSERT_NEAR(rows[i].time - rows[i - 1].time, waits ? 0.0 : 1e-3, 1e-12) << i;
+    const double step = rows[i].time - rows[i - 1].time;
+    const bool waits = (i > 200 && i <= 350) || (i > 450 && i <= 500);
+    ASSERT_NEAR(step - before, 0.0, 1e-3 / 80.0 + 1e-9) << i;
+    ASSERT_FALSE(waits ? step > before + 1e-12 : step < before - 1e-12) << i;
+    before = step;
+    if (i > 281 && i <= 350) {
+      ASSERT_NEAR(step, 0.0, 1e-12) << i;
+    }
   }
+}
+
+/// A tutor presses with 6 N to the end of the recording, and moves; who is led holds still.
+TEST(TutoredPassTest, AtTheEndOfTheRecordingAndOfTheRunTheForceIsGivenBackWithoutAStep) {
+  ModelMotion motion;
+  motion.rate = 1000.0;
+  for (int i = 0; i <= 400; ++i) {
+    motion.ticks.push_back({{{1e-4 * i, 0.0, 0.0}, {0.1, 0.0, 0.0}}, {0.0, 6.0, 0.0}});
+  }
+  TutoringOptions options;
+  options.ramp = 0.2;
+  options.gains = {0.0, 100.0, 1.0};
+  TutoringLog log(4096, 4);
+  PlainPass inner;
+  TutoredPass pass(inner, options, motion, 0.0, log);
+  pass.begin(0);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  double largest = 0.0;
+  while (pass.state() == PassState::kRunning) {
+    const Eigen::Vector3d force = pass.tick(Readings{device::DeviceReading{}}, 1e-3).force;
+    ASSERT_LT((force - before).norm(), 0.25);
+    largest = std::max(largest, force.y());
+    before = force;
+  }
+  EXPECT_NEAR(largest, 6.0, 1e-9);
+  EXPECT_TRUE(before.isZero(1e-12)) << "the lead has been given back";
 }
 
 }  // namespace
