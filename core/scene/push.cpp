@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/control/pd_controller.h"
 #include "core/scene/require.h"
@@ -10,6 +11,12 @@
 namespace haptrial::scene {
 
 using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kComesAndGoes = 0.05;  // a measured value, so that the force takes no step [s]
+
+}  // namespace
 
 Constant::Constant(const ConstantParameters& parameters, const Setting& setting)
     : force_(control::saturate(parameters.force, setting.limit)) {
@@ -53,7 +60,10 @@ Vector3d Pulse::force(const Felt& felt, FieldState& state) noexcept {
   return state.stimulus = risen * parameters_.force;
 }
 
-Measured::Measured(const MeasuredParameters& parameters, const Setting&) : parameters_(parameters) {
+Measured::Measured(const MeasuredParameters& parameters, const Setting& setting)
+    : parameters_(parameters),
+      value_(parameters.zero),
+      most_change_(1.0 / (kComesAndGoes * setting.rate)) {
   require(std::isfinite(parameters.zero), "Measured: zero must be finite");
   require(parameters.gain.allFinite(), "Measured: gain must be finite");
 }
@@ -61,8 +71,13 @@ Measured::Measured(const MeasuredParameters& parameters, const Setting&) : param
 Vector3d Measured::force(const Felt& felt, FieldState&) noexcept {
   const std::size_t at = parameters_.channel;
   const bool there = at < felt.channels.size() && std::isfinite(felt.channels[at]);
-  return there ? Vector3d((felt.channels[at] - parameters_.zero) * parameters_.gain)
-               : Vector3d::Zero();
+  if (there) {
+    value_ = felt.channels[at];
+  }
+  const double wanted = there ? 1.0 : 0.0;
+  const bool begins = !std::exchange(begun_, true);
+  share_ += begins ? wanted : std::clamp(wanted - share_, -most_change_, most_change_);
+  return share_ * (value_ - parameters_.zero) * parameters_.gain;
 }
 
 }  // namespace haptrial::scene

@@ -88,14 +88,20 @@ struct MeasuredParameters {
   FieldTraits traits() const { return {}; }
 };
 
-/// f = gain (x - zero), where x is the newest value of a channel; 0 while there is none. Active.
+/// f = w gain (x - zero), where x is the newest value of a channel. While there is none, w goes to
+/// 0 over 50 ms, and back to 1 when there is one again. Active.
 class Measured {
  public:
   Measured(const MeasuredParameters& parameters, const Setting& setting);
+  void start(const PointState&) noexcept { begun_ = false; }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
 
  private:
   MeasuredParameters parameters_;
+  double value_;
+  double share_{0.0};   // w
+  double most_change_;  // of w in a tick
+  bool begun_{false};
 };
 
 }  // namespace haptrial::scene

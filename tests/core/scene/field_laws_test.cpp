@@ -141,12 +141,34 @@ TEST(PushTest, AMeasuredValueIsFollowedAndAMissingOneGivesNoForce) {
   FieldState state;
   Felt felt = at_time(0.0);
   const std::array<double, 2> values{9.0, 2.0};
-  EXPECT_EQ(measured.force(felt, state), Vector3d::Zero()) << "there is no channel";
   felt.channels = values;
   EXPECT_EQ(measured.force(felt, state), Vector3d(0.0, 6.0, 0.0));
-  const std::array<double, 2> lost{9.0, NAN};
-  felt.channels = lost;
+  const std::array<double, 2> others{9.0, 0.5};
+  felt.channels = others;
   EXPECT_EQ(measured.force(felt, state), Vector3d::Zero());
+  Measured without({2, 0.5, {0.0, 4.0, 0.0}}, kSetting);
+  EXPECT_EQ(without.force(felt, state), Vector3d::Zero()) << "there is no such channel";
+}
+
+/// The instrument gives 6 N, falls silent for 0.1 s, and comes back.
+TEST(PushTest, AMeasuredValueThatGoesAndComesMakesNoStep) {
+  Measured measured({0, 0.0, {0.0, 1.0, 0.0}}, kSetting);
+  FieldState state;
+  const std::array<double, 1> value{6.0};
+  const std::array<double, 1> lost{NAN};
+  double before = 6.0;
+  for (int i = 0; i < 400; ++i) {
+    Felt felt = at_time(1e-3 * i);
+    felt.channels = i < 100 || i >= 200 ? value : lost;
+    const double force = measured.force(felt, state).y();
+    ASSERT_NEAR(force, before, 6.0 / 50.0 + 1e-12) << i;
+    if (i < 100 || i >= 250) {
+      ASSERT_NEAR(force, 6.0, 1e-9) << i;
+    } else if (i >= 150 && i < 200) {
+      ASSERT_NEAR(force, 0.0, 1e-9) << i;
+    }
+    before = force;
+  }
 }
 
 // --- inertia ----------------------------------------------------------------------------------
