@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kComesAndGoes = 0.05;  // a measured value, so that the force takes no step [s]
+constexpr double kAlternates = 5.0;     // faster than this a measured force alternates [Hz]
 
 }  // namespace
 
@@ -63,12 +64,13 @@ Vector3d Pulse::force(const Felt& felt, FieldState& state) noexcept {
 Measured::Measured(const MeasuredParameters& parameters, const Setting& setting)
     : parameters_(parameters),
       value_(parameters.zero),
-      most_change_(1.0 / (kComesAndGoes * setting.rate)) {
+      most_change_(1.0 / (kComesAndGoes * setting.rate)),
+      slow_(kAlternates, setting.rate) {
   require(std::isfinite(parameters.zero), "Measured: zero must be finite");
   require(parameters.gain.allFinite(), "Measured: gain must be finite");
 }
 
-Vector3d Measured::force(const Felt& felt, FieldState&) noexcept {
+Vector3d Measured::force(const Felt& felt, FieldState& state) noexcept {
   const std::size_t at = parameters_.channel;
   const bool there = at < felt.channels.size() && std::isfinite(felt.channels[at]);
   if (there) {
@@ -77,7 +79,14 @@ Vector3d Measured::force(const Felt& felt, FieldState&) noexcept {
   const double wanted = there ? 1.0 : 0.0;
   const bool begins = !std::exchange(begun_, true);
   share_ += begins ? wanted : std::clamp(wanted - share_, -most_change_, most_change_);
-  return share_ * (value_ - parameters_.zero) * parameters_.gain;
+  const Vector3d force = share_ * (value_ - parameters_.zero) * parameters_.gain;
+  if (begins) {
+    slow_.start(force);
+  }
+  if (parameters_.stimulus) {
+    state.stimulus = force - slow_.next(force);
+  }
+  return force;
 }
 
 }  // namespace haptrial::scene

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "core/scene/field_state.h"
+#include "core/scene/low_pass.h"
 
 namespace haptrial::scene {
 
@@ -83,6 +84,7 @@ struct MeasuredParameters {
   std::size_t channel{0};                         // place of the value among those of channels
   double zero{0.0};                               // value without force, in its own unit
   Eigen::Vector3d gain{Eigen::Vector3d::Zero()};  // force for each unit above it, in W [N]
+  bool stimulus{false};  // the value alternates by itself: the handle does not oscillate
 
   StiffnessBound bound() const { return {}; }
   FieldTraits traits() const { return {}; }
@@ -102,6 +104,7 @@ class Measured {
   double share_{0.0};   // w
   double most_change_;  // of w in a tick
   bool begun_{false};
+  LowPass slow_;  // of the force
 };
 
 }  // namespace haptrial::scene

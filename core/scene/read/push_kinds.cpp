@@ -63,7 +63,10 @@ const Schema<MeasuredParameters>& measured_schema() {
                   "newtons")
           .required()
           .number("zero", &P::zero, kValue, "",
-                  "Value at which the field gives no force, in the value's own unit");
+                  "Value at which the field gives no force, in the value's own unit")
+          .flag("stimulus", &P::stimulus,
+                "Whether fast changes of the value are a stimulus and no oscillation of the "
+                "handle; never for a value that the participant's hand acts on");
   return schema;
 }
 

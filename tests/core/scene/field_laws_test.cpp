@@ -146,6 +146,7 @@ TEST(PushTest, AMeasuredValueIsFollowedAndAMissingOneGivesNoForce) {
   const std::array<double, 2> others{9.0, 0.5};
   felt.channels = others;
   EXPECT_EQ(measured.force(felt, state), Vector3d::Zero());
+  EXPECT_EQ(state.stimulus, Vector3d::Zero());
   Measured without({2, 0.5, {0.0, 4.0, 0.0}}, kSetting);
   EXPECT_EQ(without.force(felt, state), Vector3d::Zero()) << "there is no such channel";
 }
@@ -169,6 +170,23 @@ TEST(PushTest, AMeasuredValueThatGoesAndComesMakesNoStep) {
     }
     before = force;
   }
+}
+
+TEST(PushTest, FastChangesOfAMeasuredValueAreAStimulusIfTheDefinitionSaysSo) {
+  MeasuredParameters p{0, 0.0, {0.0, 1.0, 0.0}};
+  p.stimulus = true;
+  Measured measured(p, kSetting);
+  FieldState state;
+  Vector3d most = Vector3d::Zero();
+  for (int i = 0; i < 2000; ++i) {
+    const double t = 1e-3 * i;
+    const std::array<double, 1> value{3.0 + std::sin(2.0 * std::numbers::pi * 50.0 * t)};
+    Felt felt = at_time(t);
+    felt.channels = value;
+    measured.force(felt, state);
+    most = i > 1000 ? Vector3d(most.cwiseMax(state.stimulus)) : most;
+  }
+  EXPECT_NEAR(most.y(), 1.0, 0.05) << "the sine is a stimulus, the 3 N are none";
 }
 
 // --- inertia ----------------------------------------------------------------------------------
