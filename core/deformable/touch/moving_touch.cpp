@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint64_t kTicksOfPicture = 8;
+constexpr double kFastest = 200.0;  // growth of a force while the hand rests [N/s]
 constexpr double kFar = 2.0;  // of the body's diagonal: no vertex of a whole body gets that far
 
 TouchOptions felt_by(const MovingBody& body, TouchOptions options) {
@@ -78,6 +79,7 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
     return contact_;
   }
   const Vector3d way = tool - tool_;
+  const double before = contact_.force.norm();
   account_.book(contact_.force, way, period_);
   inverted_steps_ = motion_->inverted_steps();
   advance(tool);
@@ -90,7 +92,7 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
     ++counts_.contact;
     counts_.crowded += ball_.crowded() ? 1 : 0;
     counts_.unsettled += ball_.solved() ? 0 : 1;
-    limit();
+    limit(before, way.norm());
   } else {
     account_.open();
   }
@@ -204,8 +206,10 @@ void MovingTouch::keep_forces() noexcept {
 }
 
 /// A force that would turn a tetrahedron inside out is cut to what it was before, and one that
-/// might give out more energy than there is to what may be given.
-void MovingTouch::limit() noexcept {
+/// might give out more energy than there is, or grows faster than the hand bends the ball's spring,
+/// to what may be given.
+/// @param before  size of the force a tick ago [N]  @param way  of the hand since then [m]
+void MovingTouch::limit(double before, double way) noexcept {
   const double size = contact_.force.norm();
   if (motion_->inverted_steps() == inverted_steps_) {
     upright_ = size;
@@ -213,7 +217,9 @@ void MovingTouch::limit() noexcept {
     ++counts_.inverted;
     scale(size > upright_ ? upright_ / size : 1.0);
   }
-  const double share = account_.share(contact_.force.norm());
+  const double most = grasps() ? size : before + options_.stiffness * way + kFastest * period_;
+  const double share =
+      std::min(account_.share(contact_.force.norm()), most / std::max(most, contact_.force.norm()));
   counts_.limited += share < 1.0 ? 1 : 0;
   scale(share);
 }

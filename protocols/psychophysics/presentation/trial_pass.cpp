@@ -66,14 +66,19 @@ const SeenForces& TrialPass::feel_again(std::span<const PointState> hands) noexc
 PassOutput TrialPass::tick(const Readings& readings, double dt) noexcept {
   PassOutput out;
   tick_time_ = dt;
-  drives_ = {};
+  const auto drives_before = std::exchange(drives_, {});
   saturated_ = false;
   device_count_ = std::min(readings.size(), kMostDevices);
   look_at_hands(readings);
   const Part part = part_;  // on this tick, whatever begins with the next
   if (state_ == PassState::kRunning) {
     if (part_ == Part::kIntervals) {
+      const IntervalRun& run = setup_.intervals[interval_];
       present(readings, dt, out);
+      if (flew_apart(run)) {
+        abort("a body was pressed beyond what its steps are stable for and flew apart");
+        drives_ = drives_before;  // the end of the pass takes them off without a step
+      }
     } else {
       listen(readings, dt, out);
     }
@@ -231,6 +236,19 @@ void TrialPass::feel(const Readings& readings) noexcept {
     drives_[device] = drive(
         run, device, run.scenes[device].force(reading.tool, reading.shares, reading.channels));
   }
+}
+
+/// The body was put to rest around the tool and gives no force any more.
+bool TrialPass::flew_apart(const IntervalRun& run) const noexcept {
+  for (const scene::Scene& scene : run.scenes) {
+    for (std::size_t field = run.first_object; field < scene.size(); ++field) {
+      const deformable::BodyTouch* touch = scene.touch(field);
+      if (touch != nullptr && touch->counts().flown_apart > 0) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 void TrialPass::present(const Readings& readings, double dt, PassOutput& out) noexcept {

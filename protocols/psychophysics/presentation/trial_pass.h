@@ -187,6 +187,7 @@ class TrialPass final : public Pass {
   void note_stage(const IntervalRun& run, PassOutput& out) noexcept;
   int sound_of(const PresentedQuestion& asked, const Answer& answer) const noexcept;
   void feel(const Readings& readings) noexcept;
+  bool flew_apart(const IntervalRun& run) const noexcept;
   void present(const Readings& readings, double dt, PassOutput& out) noexcept;
   void show_pressed(const IntervalRun& run, const StageSight& sight, std::size_t devices) noexcept;
   void move_targets(IntervalRun& run, double dt) noexcept;

@@ -782,6 +782,32 @@ TEST_F(SimulatedTrialsTest, ABodyOfSpringsIsPressedAndSaysHowItMoved) {
   EXPECT_EQ(rows_.events.count("energy_limit"), rows_.moving[0].limited > 0 ? 1u : 0u);
 }
 
+/// A hand that goes deeper than a soft body of elements can follow.
+TEST_F(SimulatedTrialsTest, ABodyThatFliesApartEndsThePassAndTheForceStaysForItsEnd) {
+  const std::string soft =
+      "model = \"implicit\"\nyoung = 20000.0\npoisson = 0.4\ndensity = 1000.0\n";
+  Table root = Table::parse(soft_block("0.005", soft), "study.toml");
+  definition_ = trials_protocol().read(root, "study.toml", nullptr);
+  DefinedTrials trials(studied(), place());
+  auto trial = trials.next(nullptr);
+  Pass& pass = trials.make_pass(*trial, trials.phases().front());
+  pass.begin(0);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (int tick = 0; pass.state() == PassState::kRunning; ++tick) {
+    device::DeviceReading reading;
+    reading.tool.position = {0.001, 0.006 - 1e-4 * tick, 0.0};
+    reading.tool.velocity = {0.0, -0.1, 0.0};
+    const PassOutput out = pass.tick(Readings(reading), 1e-3);
+    ASSERT_LT(out.force.norm(), before.norm() + 5000.0 * 1e-4 + 0.2 + 1e-9) << tick;
+    ASSERT_GT(out.force.norm(), before.norm() - 1.0) << tick;
+    before = out.force;
+    ASSERT_LT(tick, 500);
+  }
+  EXPECT_EQ(pass.state(), PassState::kAborted);
+  EXPECT_GT(before.norm(), 0.5) << "what the end of the pass takes off";
+  EXPECT_THAT(trials.why_aborted(), testing::HasSubstr("flew apart"));
+}
+
 TEST_F(SimulatedTrialsTest, WhatWouldTurnATetrahedronInsideOutIsTold) {
   ASSERT_NO_FATAL_FAILURE(simulate_trials(soft_block("0.0025")));
   ASSERT_EQ(rows_.touched.size(), 1u);

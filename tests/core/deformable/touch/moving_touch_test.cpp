@@ -330,9 +330,13 @@ TEST(MovingTouchTest, ABodyThatFliesApartIsPutToRestAndTold) {
   MovingTouch touch(std::make_shared<const MovingBody>(body), ball(), kTick);
   const Vector3d over(0.0, kTop + kRadius, 0.0);
   touch.start(over);
+  double before = 0.0;
   for (int i = 1; i <= 500; ++i) {
     const Vector3d force = touch.tick(over - Vector3d(0.0, 3e-6 * i, 0.0), kTick).force;
     ASSERT_TRUE(force.allFinite()) << i;
+    ASSERT_LT(force.norm(), before + 5000.0 * 3e-6 + 0.2 + 1e-9)
+        << "no blow before it is put to rest";
+    before = force.norm();
   }
   EXPECT_GT(touch.counts().flown_apart, 0u);
 }
