@@ -97,6 +97,7 @@ void Channel::note(Incident what, double amount, const std::string& text,
 
 void Channel::show(bool live) {
   state_.live = live;
+  state_.lost = !live;
   latest_.write(state_);
   const std::lock_guard lock(mutex_);
   seen_ = state_;

@@ -23,6 +23,7 @@ namespace haptrial::channel {
 /// Newest values of a channel.
 struct ChannelState {
   bool live{false};  // data come
+  bool lost{false};  // they came no more, or never within the patience
   std::array<double, kMostQuantities> values{};
   std::int64_t time_ns{0};  // at which they were measured
 };

@@ -172,24 +172,24 @@ void ChannelSet::take(std::int64_t time_ns) noexcept {
   sentence_ = "";
   for (Part& part : parts_) {
     const std::size_t count = part.options.plan.quantities.size();
-    bool live = !real_;
+    bool lost = false;
     if (part.channel) {
       const ChannelState& state = part.channel->newest();
-      live = state.live;
+      lost = state.lost;
       for (std::size_t i = 0; i < count; ++i) {
-        values_[part.at + i] = live ? state.values[i] : kNone;
+        values_[part.at + i] = state.live ? state.values[i] : kNone;
       }
-    } else if (live) {
+    } else if (!real_) {
       std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(part.at), count,
                   simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns)));
     }
-    judge(part, live);
+    judge(part, lost);
   }
 }
 
 /// A value beyond its limit weighs more than a channel that is lost.
-void ChannelSet::judge(const Part& part, bool live) noexcept {
-  if (!live && part.options.required && alarm_ == Alarm::kNone) {
+void ChannelSet::judge(const Part& part, bool lost) noexcept {
+  if (lost && part.options.required && alarm_ == Alarm::kNone) {
     alarm_ = Alarm::kLost;
     sentence_ = part.lost.c_str();
   }

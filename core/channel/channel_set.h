@@ -71,14 +71,14 @@ class ChannelSet {
     std::unique_ptr<ChannelTable> table;
     std::unique_ptr<Channel> channel;  // null on a simulated clock
     std::size_t at{0};                 // of its first value in values_
-    bool missing{false};  // start() named it, and its loss is no news
+    bool missing{false};               // start() named it, and its loss is no news
     std::uint64_t next{0};             // simulated samples so far
     std::string lost;                  // sentences of its alarms
     std::vector<std::string> beyond;   // of each quantity
   };
   void simulate(Part& part, std::int64_t now_ns,
                 const std::function<void(const record::Rows&)>& put);
-  void judge(const Part& part, bool live) noexcept;
+  void judge(const Part& part, bool lost) noexcept;
 
   std::vector<Part> parts_;
   bool real_;

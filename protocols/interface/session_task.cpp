@@ -57,7 +57,8 @@ bool SessionTask::stopped() const noexcept {
          force_gone_.load(std::memory_order_acquire);
 }
 
-/// Takes what comes in beside the devices; an alarm of a channel stops them.
+/// Takes what comes in beside the devices; an alarm of a channel stops them. A channel that was
+/// lost and came back between two passes has disturbed none.
 SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
   SessionInputs inputs;
   if (window_ != nullptr) {
@@ -71,10 +72,11 @@ SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
   if (channels_ != nullptr) {
     channels_->take(time_ns);
     inputs.channels = channels_->values();
-    if (channels_->alarm() != channel::Alarm::kNone) {
-      devices_.trip(channels_->alarm() == channel::Alarm::kLost ? device::Fault::kChannelLost
-                                                                : device::Fault::kBeyondLimit,
-                    channels_->sentence());
+    const channel::Alarm alarm = channels_->alarm();
+    if (alarm == channel::Alarm::kBeyond) {
+      devices_.trip(device::Fault::kBeyondLimit, channels_->sentence());
+    } else if (alarm == channel::Alarm::kLost && pass_ != nullptr) {
+      devices_.trip(device::Fault::kChannelLost, channels_->sentence());
     }
   }
   return inputs;

@@ -283,6 +283,19 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
   }
 }
 
+/// The loop runs before the first sample comes.
+TEST_F(LiveChannelTest, ASessionWhoseNeededInstrumentSendsRunsToItsEnd) {
+  const std::string file = study(piped() + "required = true\n");
+  const GripOnAPipe grip((folder_ / "pipe").string());
+  const std::string out = folder_ / "needed";
+  const auto run = test::run_command("haptrial run " + file +
+                                     " --subject S01 --device virtual --trials 2 --out " + out);
+  EXPECT_EQ(run.status, 0) << run.errors;
+  for (const record::PassRow& pass : record::SessionReader(out + "/S01.h5").passes()) {
+    EXPECT_EQ(pass.status, record::PassStatus::kCompleted);
+  }
+}
+
 /// A session that cannot begin leaves nothing behind that the next one would have to resume.
 TEST_F(LiveChannelTest, ASessionThatNeedsAMissingInstrumentDoesNotBegin) {
   const std::string file = study("path = \"/dev/nowhere\"\nrequired = true\n");

@@ -160,6 +160,24 @@ TEST(ChannelTest, ALostInstrumentIsOpenedAnewAndAnAlarmWhereItIsNeeded) {
               ElementsAre(HasSubstr("the plug was pulled"), HasSubstr("grip is back after 2.0 s")));
 }
 
+TEST(ChannelTest, AnOpenInstrumentIsLostOnlyIfItsFirstSampleDoesNotComeInTime) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip + "required = true\npatience = 0.1\n"), {}, true);
+  std::atomic<std::int64_t> now{0};
+  set.start([&] { return now.load(); }, {});
+  set.take(0);
+  EXPECT_EQ(set.alarm(), Alarm::kNone) << "the session's clock stands";
+  set.begin();
+  wait_until([&] { return instrument->is_idle(); });
+  set.take(0);
+  EXPECT_EQ(set.alarm(), Alarm::kNone) << "no sample has come yet";
+  now = 200'000'000;
+  wait_until([&] {
+    set.take(0);
+    return set.alarm() == Alarm::kLost;
+  });
+}
+
 TEST(ChannelTest, SilenceIsALoss) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "patience = 0.1\n"), {}, true);

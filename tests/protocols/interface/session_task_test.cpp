@@ -13,7 +13,9 @@
 #include "core/stimulus/presentation.h"
 #include "protocols/force_training/recall.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/scripted_channel.h"
 #include "tests/support/scripted_device.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -347,6 +349,58 @@ TEST_F(SessionTaskTest, AFaultHoldsUntilItIsCleared) {
   EXPECT_EQ(task_.result().fault, Fault::kNone);
   EXPECT_EQ(pass.done(), 10);
   expect_all_recorded();
+}
+
+TEST_F(SessionTaskTest, ALostChannelEndsThePassThatNeedsItAndNoOther) {
+  const auto instrument = std::make_shared<test::ScriptedInstrument>();
+  Table table = Table::parse("quantities = { force = \"N\" }", "lab.toml");
+  channel::ChannelOptions options;
+  options.name = "grip";
+  options.required = true;
+  options.plan = test::scripted_kind(instrument).read(table);
+  channel::ChannelSet channels({options}, {}, true);
+  channels.start([] { return std::int64_t{0}; }, {});
+  channels.begin();
+  SessionTask task({.devices = {{&device_, limits()}}, .log = log_, .channels = &channels},
+                   Leave::kNever);
+  std::int64_t index = 0;
+  const auto tick = [&] {
+    task.tick({static_cast<std::uint64_t>(index), 1'000'000 * index, kDt});
+    ++index;
+  };
+  const auto lose = [&] {
+    instrument->give({.failure = "the plug was pulled"});
+    test::wait_until([&] {
+      tick();
+      return channels.alarm() == channel::Alarm::kLost;
+    });
+  };
+  const auto come_back = [&] {
+    instrument->give({{1.0}});
+    test::wait_until([&] {
+      tick();
+      return channels.values()[0] == 1.0;
+    });
+  };
+  ConstantPass pass({0, 5, 0}, 10);
+  const auto result_of_pass = [&] {
+    pass.restart();
+    task.start(pass, 1);
+    for (int i = 0; i < 20; ++i) {
+      tick();
+    }
+    EXPECT_TRUE(task.idle());
+    return task.result();
+  };
+  come_back();
+  lose();
+  come_back();
+  EXPECT_EQ(result_of_pass().state, PassState::kCompleted) << "it was lost between passes alone";
+  lose();
+  const PassResult lost = result_of_pass();
+  EXPECT_EQ(lost.fault, Fault::kChannelLost);
+  EXPECT_STREQ(lost.trouble, "channel grip is lost");
+  EXPECT_EQ(pass.done(), 0);
 }
 
 TEST_F(SessionTaskTest, AnEmergencyStopTakesTheForceAwayAtOnce) {
