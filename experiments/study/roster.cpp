@@ -106,7 +106,9 @@ class RosterMaker {
     const std::vector<std::size_t> stay = files_that_stay(copies);
     for (std::size_t i = 0; i < files.size(); ++i) {
       const FoundFile& found = files[i];
-      check_study(found);
+      if (!found.info.pilot && !excluded) {
+        check_study(found);
+      }
       const record::SessionInfo& info = found.info;
       if (stay[i] != i) {
         roster_.remarks.push_back(fmt::format("Not counted, because {} holds the same session: {}.",
@@ -149,9 +151,6 @@ class RosterMaker {
           fmt::format("{}: was recorded with another definition than {}: {}; give the "
                       "folder of one study",
                       found.file.string(), d_.file_name, sentence_of(changes.binding)));
-    }
-    if (found.info.pilot) {
-      return;
     }
     seed_ = request_.seed ? request_.seed : seed_ ? seed_ : found.info.seed;
     if (*seed_ != found.info.seed) {

@@ -189,6 +189,24 @@ TEST_F(RosterTest, PilotsHaveNoPlace) {
   EXPECT_EQ(now.next.front().number, 1);
 }
 
+TEST_F(RosterTest, PilotsAndExcludedParticipantsMayHaveOtherKeys) {
+  record("T01", 1, true);
+  record("P02", 1);
+  fs::create_directory(sessions_ / "excluded");
+  fs::rename(sessions_ / "P02-session-1.h5", sessions_ / "excluded/P02-session-1.h5");
+  test::write_text(definition_, std::string(kGroups) + "onset = { speed_above = 0.1 }\n");
+  experiment_ = load_experiment(definition_);
+  const Roster changed = roster();
+  EXPECT_EQ(changed.persons.size(), 2u);
+  EXPECT_THAT(nexts(changed), ElementsAre("P01 1", "P03 1"));
+  const auto second =
+      haptrial("run " + quoted(definition_) +
+               " --subject T02 --session 1 --pilot --device virtual --out " + quoted(sessions_));
+  EXPECT_EQ(second.status, 0) << second.errors;
+  const auto next = haptrial("next " + quoted(definition_) + " " + quoted(sessions_));
+  EXPECT_EQ(next.status, 0) << next.errors;
+}
+
 TEST_F(RosterTest, TheNumberOfAnExcludedParticipantIsFreeAgain) {
   record("P01", 1);
   fs::create_directory(sessions_ / "excluded");

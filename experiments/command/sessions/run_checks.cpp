@@ -199,6 +199,9 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
   std::string changed;
   for (const EarlierSession& earlier : earlier_sessions(options, own)) {
     refuse_other_case(options, earlier);
+    if (options.pilot) {
+      continue;  // each pilot may try something else
+    }
     const auto& [file, info] = earlier;
     const DefinitionChanges changes =
         protocols::study_changes(protocol, info, setup.text, options.devices.front());

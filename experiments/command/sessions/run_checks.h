@@ -21,8 +21,8 @@ void check_run_options(const RunOptions& options);
 /// @throws InputError unless a session can begin in this file, or with --resume go on in it.
 void check_session_file(const RunOptions& options, const std::filesystem::path& file);
 
-/// Compares the definition with those of the sessions that the folder holds already, pilots with
-/// pilots and others with others. @returns a sentence about keys that differ and may; empty if none
+/// Compares the definition with those of the sessions that the folder holds already; a pilot may
+/// differ from all of them. @returns a sentence about keys that differ and may; empty if none
 /// @throws InputError if they are of another study; names the keys.
 /// @param own  file of the session that is to be recorded
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
