@@ -79,12 +79,13 @@ void ServoLoop::run_real(ServoTask& task) {
     if (stop_requested()) {
       break;
     }
-    note_start(deadlines.start(start));
+    const Deadlines::Start begun = deadlines.start(start);
+    note_start(begun);
     if (origin < 0) {
       origin = start;
       origin_ns_.store(start, std::memory_order_release);
     }
-    more = task.tick({index, start - origin, dt});
+    more = task.tick({index, start - origin, dt, begun.resynchronised ? begun.lateness : 0});
     const std::int64_t end = now_ns();
     timing_.compute.add(end - start);
     overruns_.fetch_add(deadlines.end(end) ? 1 : 0, std::memory_order_relaxed);

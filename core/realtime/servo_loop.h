@@ -16,6 +16,8 @@ struct Tick {
   std::uint64_t index;   // from 0, without gaps, also over several calls of run()
   std::int64_t time_ns;  // start of this tick since the first tick of the loop [ns]
   double dt;             // the nominal period 1 / rate [s]; what really passed is in time_ns
+  std::int64_t suspended_ns{0};  // for which the loop stood still before this tick; no tick makes
+                                 // up for it
 };
 
 /// The task of a servo loop once a period.

@@ -13,6 +13,16 @@ namespace haptrial::experiments {
 using protocols::PlannedTrial;
 using realtime::ClockKind;
 
+namespace {
+
+/// "practice, trial 3, test"
+std::string words_of(const record::PassRow& pass) {
+  return fmt::format("{}trial {}, {}", pass.practice ? "practice, " : "", pass.trial,
+                     record::name_of(pass.phase));
+}
+
+}  // namespace
+
 std::string planned_of(const protocols::Extent& extent, int defined) {
   return fmt::format(
       "{} of {} trials planned{}", extent.trials, defined,
@@ -61,9 +71,7 @@ void SessionNotices::note_overruns(const LoopWatch& watch) {
     return;
   }
   if (const auto late = watch.end_pass(p_.loop.ticks(), p_.loop.overruns())) {
-    const record::PassRow& pass = p_.record.pass();
-    const std::string what = fmt::format("{}trial {}, {}: {}", pass.practice ? "practice, " : "",
-                                         pass.trial, record::name_of(pass.phase), *late);
+    const std::string what = fmt::format("{}: {}", words_of(p_.record.pass()), *late);
     p_.record.event("overruns", what);
     note(
         "the servo loop does not keep its rate: every pass with more than 1 % of overruns is "
@@ -75,6 +83,15 @@ void SessionNotices::note_overruns(const LoopWatch& watch) {
 void SessionNotices::note_pass(const protocols::PassResult& result) {
   for (const std::string& trouble : p_.record.markers().troubles()) {
     note(trouble);
+  }
+  if (result.suspended_ns > 0) {
+    const std::string what = fmt::format("{}: {:.3f} s", words_of(p_.record.pass()),
+                                         1e-9 * static_cast<double>(result.suspended_ns));
+    p_.record.event("suspended", what);
+    note(
+        fmt::format("the loop was suspended in {}: what was presented then lasted longer, and a "
+                    "reaction time over it is not known; repeat the trial",
+                    what));
   }
   // A hand that did not carry all the damping was guided less firmly, which an analyst has to know.
   if (result.reduced_ticks > 0) {

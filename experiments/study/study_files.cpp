@@ -147,11 +147,12 @@ void remark_on_marks(const std::vector<fs::path>& files, std::vector<std::string
                remarks);
 }
 
-/// Adds notes of the experimenters, answers that they took back, and mistakes that participants
-/// reported.
+/// Adds notes of the experimenters, answers that they took back, mistakes that participants
+/// reported, and trials in which the loop was suspended.
 void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::string>& remarks) {
   std::vector<std::string> mistakes;
   std::vector<std::string> taken_back;
+  std::vector<std::string> suspended;
   std::vector<std::string> notes;
   for (const fs::path& file : files) {
     const record::SessionReader reader(file);
@@ -161,6 +162,8 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
         mistakes.push_back(line);
       } else if (event.kind == "taken_back") {
         taken_back.push_back(line);
+      } else if (event.kind == "suspended") {
+        suspended.push_back(line);
       } else if (event.kind == "note" && !event.text.starts_with("console: ")) {
         notes.push_back(line);
       }
@@ -176,6 +179,12 @@ void remark_on_trials(const std::vector<fs::path>& files, std::vector<std::strin
     remarks.push_back(fmt::format(
         "Taken back by the experimenter, and presented again, which is what is analysed: {}: {}.",
         counted(taken_back.size(), "trial", "trials"), fmt::join(taken_back, "; ")));
+  }
+  if (!suspended.empty()) {
+    remarks.push_back(
+        fmt::format("The loop was suspended, so that what was presented then lasted longer and a "
+                    "reaction time over it is not known; analysed all the same: {}.",
+                    fmt::join(suspended, "; ")));
   }
   if (!notes.empty()) {
     remarks.push_back(fmt::format("Notes of the experimenter: {}.", fmt::join(notes, "; ")));

@@ -63,6 +63,8 @@ class Pass {
   virtual void begin(std::uint64_t sequence) noexcept { static_cast<void>(sequence); }
   /// @param dt  since the previous tick [s]
   virtual PassOutput tick(const Readings& readings, double dt) noexcept = 0;
+  /// The loop stood still before the next tick: the clock went on, and the ticks did not.
+  virtual void note_suspension() noexcept {}
   /// Outputs of the last tick() to the devices after the first, in their order.
   virtual std::span<const Drive> others() const noexcept { return {}; }
   virtual PassState state() const noexcept = 0;

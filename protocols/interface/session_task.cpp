@@ -83,6 +83,7 @@ SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
 }
 
 bool SessionTask::tick(const realtime::Tick& tick) noexcept {
+  note_suspension(tick.suspended_ns);
   take_requests(tick.index);
   resume_after_gap(tick.time_ns);
 
@@ -263,6 +264,14 @@ void SessionTask::go_over_if_changed(const PassOutput& out) noexcept {
   const bool changed = std::exchange(felt_stage_, out.stage) != out.stage || begins_stage(out);
   if (changed && !begins_) {
     devices_.go_over();
+  }
+}
+
+/// A pass that begins on this tick missed nothing.
+void SessionTask::note_suspension(std::int64_t suspended_ns) noexcept {
+  if (pass_ != nullptr && suspended_ns > 0) {
+    result_.suspended_ns += suspended_ns;
+    pass_->note_suspension();
   }
 }
 

@@ -30,6 +30,7 @@ struct PassResult {
   // During the run, of what the definition asks for (HandleGuard).
   control::GainShares least_gains;
   std::uint64_t reduced_ticks{0};  // with noticeably less than all of the damping
+  std::int64_t suspended_ns{0};    // for which the loop stood still
 };
 
 /// Start of a resumed session: number and time of its first tick.
@@ -103,6 +104,7 @@ class SessionTask final : public realtime::ServoTask {
   bool tick(const realtime::Tick& tick) noexcept override;
 
  private:
+  void note_suspension(std::int64_t suspended_ns) noexcept;
   void take_requests(std::uint64_t sequence) noexcept;
   SessionInputs inputs(std::int64_t time_ns) noexcept;
   bool take_stop() noexcept;

@@ -22,6 +22,7 @@ class LinkedPass final : public Pass {
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
   std::span<const Drive> others() const noexcept override;
+  void note_suspension() noexcept override { inner_->note_suspension(); }
   PassState state() const noexcept override { return state_; }
   bool names_onsets() const noexcept override { return inner_->names_onsets(); }
   bool wants_attention() noexcept override;

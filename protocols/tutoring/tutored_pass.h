@@ -20,6 +20,7 @@ class TutoredPass final : public Pass {
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
   std::span<const Drive> others() const noexcept override { return inner_->others(); }
+  void note_suspension() noexcept override { inner_->note_suspension(); }
   PassState state() const noexcept override { return inner_->state(); }
   bool names_onsets() const noexcept override { return inner_->names_onsets(); }
   bool wants_attention() noexcept override;

@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -120,6 +123,60 @@ TEST_P(LiveInterruptTest, EndsAtOnceAndCanBeGoneOnWith) {
   EXPECT_THAT(info.output, HasSubstr("interrupted at "));
   EXPECT_THAT(info.output, HasSubstr(" 0 gaps"));
   expect_it_goes_on();
+}
+
+const char* const kLongStage = R"([experiment]
+protocol = "trials"
+name = "wait"
+[design]
+participants = 2
+[[stages]]
+name = "wait"
+until = { time = 5.0 }
+[response]
+question = "Felt?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[blocks]]
+name = "one"
+trials = 1
+[observer]
+decides = "yes"
+[analysis]
+kind = "none"
+)";
+
+/// The lid of a laptop is closed in a trial, and opened again.
+TEST(LiveSuspensionTest, TheTrialInWhichItHappensIsNamed) {
+  const test::TemporaryFolder folder;
+  test::write_text(folder / "wait.toml", kLongStage);
+  const std::string out = "'" + (folder / "out").string() + "'";
+  LiveCommand session("run '" + (folder / "wait.toml").string() +
+                      "' --subject S01 --device virtual --out " + out);
+  session.line_after("recording ");
+  ASSERT_TRUE(session.reaches([&] {
+    try {
+      return record::SessionReader(folder / "out/S01.h5.partial").sample_count() > 0;
+    } catch (const std::exception&) {
+      return false;  // it has no tick yet
+    }
+  })) << session.errors();
+  session.signal(SIGSTOP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  session.signal(SIGCONT);
+  const CommandResult ended = session.wait();
+  EXPECT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("notice: the loop was suspended in trial 1, "));
+  std::vector<std::string> suspended;
+  for (const record::EventRow& event : record::SessionReader(folder / "out/S01.h5").events()) {
+    if (event.kind == "suspended") {
+      suspended.push_back(event.text);
+    }
+  }
+  ASSERT_EQ(suspended.size(), 1u);
+  EXPECT_THAT(suspended[0], testing::StartsWith("trial 1, "));
+  const CommandResult analysed = test::run_command("haptrial analyze " + out);
+  EXPECT_THAT(analysed.output, HasSubstr("The loop was suspended"));
+  EXPECT_THAT(analysed.output, HasSubstr("S01, " + suspended[0]));
 }
 
 std::string name_of(const testing::TestParamInfo<std::tuple<Interruption, Moment>>& info) {

@@ -612,7 +612,8 @@ void TrialPass::take(const Answer& given, PassOutput& out) noexcept {
         setup_.intervals.back().machine.times()[static_cast<std::size_t>(asked.onset)];
     from = first_ticks_.back() + static_cast<std::uint64_t>(std::max<std::int64_t>(0, times.begin));
   }
-  answer.reaction_time = answer.silence
+  const bool interrupted = suspended_at_ && *suspended_at_ >= from;
+  answer.reaction_time = answer.silence || interrupted
                              ? std::numeric_limits<double>::quiet_NaN()
                              : static_cast<double>(answer.sequence - from + 1) * tick_time_;
   answer.pace = asked.question->pace_of(answer.reaction_time);

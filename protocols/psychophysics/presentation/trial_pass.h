@@ -107,7 +107,7 @@ struct Answer {
   record::ResponseSource source{record::ResponseSource::kNone};
   int code{-1};                                                    // of the button or the key's bit
   std::uint64_t sequence{0};                                       // of the tick
-  double reaction_time{std::numeric_limits<double>::quiet_NaN()};  // [s]
+  double reaction_time{std::numeric_limits<double>::quiet_NaN()};  // [s]; NaN: not known
   Pace pace{Pace::kInTime};
 };
 
@@ -135,6 +135,7 @@ class TrialPass final : public Pass {
 
   void begin(std::uint64_t sequence) noexcept override;
   PassOutput tick(const Readings& readings, double dt) noexcept override;
+  void note_suspension() noexcept override { suspended_at_ = sequence_; }
   std::span<const Drive> others() const noexcept override {
     return {drives_.data() + 1, device_count_ - 1};
   }
@@ -234,6 +235,7 @@ class TrialPass final : public Pass {
   bool saturated_{false};
   std::uint64_t sequence_{0};
   std::uint64_t asked_at_{0};                           // sequence number
+  std::optional<std::uint64_t> suspended_at_;           // first tick after the last suspension
   double time_{0.0};                                    // in the question or the feedback [s]
   double tick_time_{0.0};                               // [s]
   std::uint32_t buttons_{0}, keys_{0};                  // held

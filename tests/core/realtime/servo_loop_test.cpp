@@ -194,6 +194,13 @@ TEST(ServoLoopTest, ASuspendedLoopMovesItsDeadlines) {
   EXPECT_GE(loop.resynchronised(), 1u);
   EXPECT_EQ(task.ticks.size(), 100u);
   EXPECT_GE(task.ticks[21].time_ns, task.ticks[20].time_ns + 150'000'000);
+  EXPECT_GE(task.ticks[21].suspended_ns, 149'000'000);
+  std::int64_t suspended = 0;
+  for (const Tick& tick : task.ticks) {  // the clock is the ticks, and what they do not make up for
+    suspended += tick.suspended_ns;
+    const auto periods = static_cast<std::int64_t>(tick.index) * 1'000'000;
+    EXPECT_LE(std::abs(tick.time_ns - periods - suspended), 100'000'000) << tick.index;
+  }
   // The 78 periods from there to the last tick are whole: nothing is caught up.
   EXPECT_GE(task.ticks.back().time_ns, task.ticks[21].time_ns + 78 * 1'000'000);
 }

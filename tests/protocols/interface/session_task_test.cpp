@@ -45,15 +45,18 @@ class ConstantPass final : public Pass {
     out.shown = seen;
     return out;
   }
+  void note_suspension() noexcept override { ++suspensions_; }
   PassState state() const noexcept override { return done_ < ticks_ ? PassState::kRunning : end_; }
   void restart() { done_ = 0; }
   int done() const { return done_; }
+  int suspensions() const { return suspensions_; }
 
  private:
   Vector3d force_;
   int ticks_;
   PassState end_;
   int done_{0};
+  int suspensions_{0};
 };
 
 struct Witness final : stimulus::Observer {
@@ -519,6 +522,23 @@ TEST_F(RampedTaskTest, AfterAGapTheForceRampsInAgain) {
     const double share = std::min(1.0, 0.1 * static_cast<double>(i < 30 ? i + 1 : i - 29));
     EXPECT_NEAR(device_.written.back().y(), 5.0 * share, 1e-9) << i;
   }
+}
+
+TEST_F(SessionTaskTest, ASuspensionIsThatOfThePassInWhichItHappens) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  ConstantPass pass({0, 5, 0}, 20);
+  std::int64_t time = 0;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    if (i == 5) {
+      task_.start(pass, 1);
+    }
+    const std::int64_t suspended = i == 5 || i == 12 || i == 14 || i == 30 ? kSecond : 0;
+    time += 1'000'000 + suspended;
+    task_.tick({i, time, kDt, suspended});
+  }
+  EXPECT_EQ(task_.result().state, PassState::kCompleted);
+  EXPECT_EQ(task_.result().suspended_ns, 2 * kSecond);
+  EXPECT_EQ(pass.suspensions(), 2);
 }
 
 /// A pass that turns its force about with its stage.

@@ -173,6 +173,24 @@ INSTANTIATE_TEST_SUITE_P(Times, PaceTest,
                          testing::Values(Case{149, Pace::kTooFast}, Case{150, Pace::kInTime},
                                          Case{400, Pace::kInTime}, Case{401, Pace::kTooSlow}));
 
+TEST_F(AnswersTest, AReactionTimeIsNotKnownIfTheLoopStoodStillInIt) {
+  const TrialQuestion question = limited(false);
+  const auto answered = [&](int before, int after) {
+    TrialPass pass = pass_of({&question});
+    pass.begin(kFirst);
+    stay(pass, before, 0.0);
+    pass.note_suspension();
+    stay(pass, after, 0.0);
+    stay(pass, 1, 0.0, 1.0);
+    return pass.answers().front();
+  };
+  EXPECT_DOUBLE_EQ(answered(kStage - 1, 201).reaction_time, 201 * kDt) << "before the question";
+  const Answer interrupted = answered(kStage + 50, 20);
+  EXPECT_TRUE(interrupted.given);
+  EXPECT_TRUE(std::isnan(interrupted.reaction_time));
+  EXPECT_EQ(interrupted.pace, Pace::kInTime) << "nobody knows that it was too fast";
+}
+
 TEST_F(AnswersTest, TheTickAllocatesNothing) {
   const TrialQuestion question = by_hand(), other = limited(false);
   TrialPass pass = pass_of({&question, &other});
