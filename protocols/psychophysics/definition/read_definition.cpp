@@ -186,8 +186,7 @@ void keep_stages(const std::vector<NamedStage>& stages, TrialsDefinition& d) {
     d.stage_buttons.push_back(stage.stage.until.buttons);
     d.markers.used = d.markers.used || stage.marker > 0;
     const Until& until = stage.stage.until;
-    d.stage_time +=
-        std::max(until.time, until.hold) + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
+    d.stage_time += until.soonest() + (std::isfinite(stage.stage.timeout) ? 1.0 : 0.0);
   }
 }
 

@@ -206,7 +206,7 @@ void read_timeout(Table& table, const std::string& key, Reading& reading) {
   Table inner = table.table(key);
   Stage& stage = reading.stage();
   timeout_schema().read(inner, stage);
-  const double soonest = std::max(stage.until.time, reading.longest_hold);
+  const double soonest = stage.until.time + reading.longest_hold;
   if (stage.timeout < soonest) {
     inner.reject("after", fmt::format("{:g}, before the stage can end", stage.timeout),
                  fmt::format("at least the {:g} s that until takes", soonest));

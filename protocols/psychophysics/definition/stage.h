@@ -20,6 +20,8 @@ struct Until {
   double above{-std::numeric_limits<double>::infinity()};  // its value is, in its own unit
   double below{std::numeric_limits<double>::infinity()};   // likewise
   double hold{0.0};                                        // >= 0 [s]
+
+  double soonest() const noexcept { return time + hold; }  // since the stage began [s]
 };
 
 /// Consequence of a stage that takes too long, or in which too little was felt.

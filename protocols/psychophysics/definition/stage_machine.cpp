@@ -230,11 +230,10 @@ void StageMachine::tick(Readings readings, Scenes scenes, double dt, const Eigen
   press(readings);
   measure(stage, speed, scenes);
   in_stage_ += dt;
-  const bool now = holds(stage.until, readings, scenes, speed);
+  const bool now =
+      in_stage_ >= stage.until.time - kRounding && holds(stage.until, readings, scenes, speed);
   held_ = now ? std::max(held_, 0.0) + (held_ < 0.0 ? 0.0 : dt) : -1.0;
-  const bool reached =
-      now && held_ >= stage.until.hold - kRounding && in_stage_ >= stage.until.time - kRounding;
-  if (reached) {
+  if (now && held_ >= stage.until.hold - kRounding) {
     const bool enough = is_enough(stage, measurements);
     leave(enough ? StageEnd::kReached : StageEnd::kTooLittle,
           enough ? Consequence::kGoOn : stage.require->otherwise, scenes);

@@ -83,11 +83,12 @@ std::string words_of_end(const TrialsDefinition& d, const Presented& presented,
     parts.push_back(words_of_channel(d, until));
   }
   if (parts.empty()) {
-    return fmt::format("after {:g} s", std::max(until.time, until.hold));
+    return fmt::format("after {:g} s", until.soonest());
   }
   std::string words = fmt::format("when {}", fmt::join(parts, " and "));
   words += until.hold > 0.0 ? fmt::format(" for {:.3g} s", until.hold) : "";
-  return words + (until.time > 0.0 ? fmt::format(", not before {:g} s", until.time) : "");
+  const char* const from = until.hold > 0.0 ? "counted from" : "not before";
+  return words + (until.time > 0.0 ? fmt::format(", {} {:g} s", from, until.time) : "");
 }
 
 std::string words_of_requirement(const Presented& presented, const Requirement& require) {
@@ -113,7 +114,7 @@ PreviewedStage previewed_stage(const TrialsDefinition& d, const Presented& prese
   PreviewedStage shown;
   shown.name = named.name;
   shown.fixed = is_fixed(stage.until);
-  shown.shortest = std::max(stage.until.time, stage.until.hold);
+  shown.shortest = stage.until.soonest();
   shown.longest = shown.fixed ? shown.shortest : stage.timeout;
   shown.ends = words_of_end(d, presented, stage.until);
   if (std::isfinite(stage.timeout)) {

@@ -156,7 +156,10 @@ TEST(ReadStagesTest, MistakesGetTheirSentence) {
               ElementsAre(HasSubstr("at least the 0.7 s that until takes")))
       << "or trials of a long drawn time would abort for ever";
   EXPECT_THAT(
-      problems_of(head + "until = { time = 0.5, for = 0.5 }\ntimeout = { after = 0.5" + abort),
+      problems_of(head + "until = { time = 0.5, for = 0.5 }\ntimeout = { after = 0.9" + abort),
+      ElementsAre(HasSubstr("at least the 1 s that until takes")));
+  EXPECT_THAT(
+      problems_of(head + "until = { time = 0.5, for = 0.5 }\ntimeout = { after = 1.0" + abort),
       ElementsAre());
   EXPECT_THAT(problems_of(head +
                           "until = { speed_above = 0.2, speed_below = 0.1 }\n"

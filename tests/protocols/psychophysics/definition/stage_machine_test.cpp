@@ -107,6 +107,19 @@ TEST_F(StageMachineTest, WhatHasToHoldHoldsWithoutABreak) {
   EXPECT_EQ(ticks, 352);
 }
 
+TEST_F(StageMachineTest, TheTimeIsAConditionThatHasToHoldLikeTheOthers) {
+  Stage wait;
+  wait.until.time = 1.0;
+  wait.until.hold = 0.5;
+  StageMachine alone = machine({wait});
+  EXPECT_EQ(run(alone, [](double) { return at_height(1.0); }), 1500);
+  wait.until.inside = 0b1;
+  StageMachine inside = machine({wait});
+  EXPECT_EQ(run(inside, [](double) { return at_height(0.005); }), 1500);
+  // The hand comes into the ball only at 1.2 s, on the tick after 1200 others.
+  EXPECT_EQ(run(inside, [](double t) { return at_height(t < 1.2 - 1e-9 ? 0.02 : 0.005); }), 1701);
+}
+
 TEST_F(StageMachineTest, SpeedsAndContactEndAStage) {
   Stage rest;
   rest.until.speed_below = 0.01;
