@@ -11,6 +11,7 @@
 #include "experiments/studies/curve_analysis.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
+#include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -124,6 +125,40 @@ TEST_F(RoundTripTest, ARecordingOfAnotherRateIsRefused) {
     EXPECT_NE(std::string(error.what()).find("recorded at 1000 Hz"), std::string::npos)
         << error.what();
   }
+}
+
+const char* const kQuestion = R"([experiment]
+protocol = "trials"
+name = "felt"
+[design]
+participants = 2
+[[stages]]
+name = "feel"
+until = { time = 0.1 }
+[response]
+question = "Felt?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[blocks]]
+name = "one"
+trials = 1
+[observer]
+decides = "yes"
+)";
+
+/// Nobody would answer, and the session would wait for ever.
+TEST_F(RoundTripTest, ARecordingWhoseAnswersTheHandDidNotGiveIsRefused) {
+  const std::string study = (folder_ / "felt.toml").string();
+  const std::string out = (folder_ / "out").string();
+  test::write_text(study, kQuestion);
+  ASSERT_EQ(test::run_command("haptrial dry-run " + study + " --subjects 1 --out " + out).status,
+            0);
+  const auto again =
+      test::run_command("haptrial run " + study + " --subject S01 --device replay:" + out +
+                        "/S01.h5 --out " + out + "/again");
+  EXPECT_EQ(again.status, 2);
+  EXPECT_NE(again.errors.find("S01.h5: the answer 'answer' of trial 1 was not given by the hand"),
+            std::string::npos)
+      << again.errors;
 }
 
 }  // namespace

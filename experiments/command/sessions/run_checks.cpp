@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
@@ -156,6 +157,14 @@ void refuse_other_case(const RunOptions& options, const EarlierSession& earlier)
   }
 }
 
+/// A recording plays the hand back, which answers by place, and silence; nobody presses its keys,
+/// buttons and pedals again.
+bool is_given_again(const record::ResponseRow& answer) {
+  using Source = record::ResponseSource;
+  const bool silence = answer.source == Source::kNone && !std::isfinite(answer.reaction_time);
+  return silence || answer.source == Source::kPlace || answer.source == Source::kMeasured;
+}
+
 }  // namespace
 
 void check_run_options(const RunOptions& options) {
@@ -250,6 +259,15 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
                     *file, sentence_of(changes.binding)));
   }
   protocol.check_replayed(setup, reader);
+  const std::vector<record::ResponseRow> answers = reader.responses();
+  const auto other = std::ranges::find_if_not(answers, is_given_again);
+  if (!options.window && other != answers.end()) {
+    throw InputError(
+        fmt::format("{}: the answer '{}' of trial {} was not given by the hand, and a recording "
+                    "plays back the hand alone; add --window and answer there, or go through the "
+                    "trials with haptrial replay",
+                    *file, other->question, other->trial));
+  }
 }
 
 protocols::TutorChoice checked_tutor(const std::string& text, const protocols::Protocol& protocol) {

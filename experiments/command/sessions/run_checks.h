@@ -29,7 +29,8 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
                         const protocols::Definition& setup, const std::filesystem::path& own);
 
 /// @throws InputError where a recording drives the session (--device replay:FILE) and is of another
-/// subject, seed or definition, or more devices are named than the definition drives.
+/// subject, seed or definition, or has answers that nobody would give, or more devices are named
+/// than the definition drives.
 void check_recording(const RunOptions& options, const protocols::Protocol& protocol,
                      const protocols::Definition& setup);
 
