@@ -97,8 +97,8 @@ struct Lowest {
 /// Newton's method, damped where the function is not convex or a step leads up (Levenberg).
 std::optional<Lowest> descended(const Marginalised& f, VectorXd p) {
   constexpr int kMost = 100;
-  constexpr double kDone = 1e-10, kLeastDamping = 1e-9;
-  double value = f(p), damping = 1e-3;
+  constexpr double kDone = 1e-10, kNear = 1e-6, kLeastDamping = 1e-9;
+  double value = f(p), damping = 1e-3, promise = 0.0;
   if (!std::isfinite(value)) {
     return std::nullopt;
   }
@@ -109,7 +109,6 @@ std::optional<Lowest> descended(const Marginalised& f, VectorXd p) {
     }
     const double scale = std::max(1.0, c.hessian.diagonal().cwiseAbs().maxCoeff());
     bool moved = false;
-    double promise = 0.0;
     // Newton's own step, without damping, may fail too: from 0 it rises again.
     for (; !moved && damping < 1e6;
          damping = moved ? damping : std::max(10.0 * damping, kLeastDamping)) {
@@ -128,11 +127,12 @@ std::optional<Lowest> descended(const Marginalised& f, VectorXd p) {
       }
     }
     if (!moved || promise < kDone) {
-      return promise < 1e-6 ? std::optional(Lowest{p, value}) : std::nullopt;
+      break;
     }
     damping = damping < 1e-12 ? 0.0 : damping * 0.01;
   }
-  return std::nullopt;
+  // Towards a singular covariance the last steps are many and small.
+  return promise < kNear ? std::optional(Lowest{p, value}) : std::nullopt;
 }
 
 std::vector<BinomialGroup> grouped(const BinomialData& data, const MatrixXd& columns,

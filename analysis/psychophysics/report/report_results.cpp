@@ -108,8 +108,9 @@ void add_population(Document& document, const TrialsResult& result) {
                  points);
   document.paragraph(fmt::format(
       "Answers of all participants in one model, by maximum likelihood in Laplace's approximation. "
-      "Intercept, slope and, with two conditions, their difference vary between participants, with "
-      "all covariances. The level is standardised: (x - {}) / {}.{}{}",
+      "Intercept, slope and, with two conditions, the differences of both vary between "
+      "participants, with all covariances. Intervals are of Student's t with participants - 1 "
+      "degrees of freedom. The level is standardised: (x - {}) / {}.{}{}",
       number(population->centre), number(population->scale),
       model.at_boundary ? " Some variance between participants is estimated as 0." : "",
       population->condition_p

@@ -81,6 +81,24 @@ BinomialData data_of(const std::vector<Row>& rows, bool two) {
   return data;
 }
 
+int degrees_of_freedom(const PopulationModel& made) {
+  return static_cast<int>(made.model.participants.size()) - 1;
+}
+
+/// Half of a 95 % interval over its standard error.
+double half_width(const PopulationModel& made) {
+  return t_quantile(0.975, degrees_of_freedom(made));
+}
+
+/// Student's t in place of the normal distribution, as participants are what varies.
+void judge_by_participants(PopulationModel& made) {
+  for (BinomialCoefficient& c : made.model.fixed.coefficients) {
+    c.p = 2.0 * t_upper_tail(std::abs(c.z), degrees_of_freedom(made));
+    c.low = c.estimate - half_width(made) * c.error;
+    c.high = c.estimate + half_width(made) * c.error;
+  }
+}
+
 /// Crossing of a condition, brought back to the axis.
 Defined<EqualityPoint> crossing(const PopulationModel& made, double side) {
   const auto n = static_cast<Eigen::Index>(made.model.fixed.coefficients.size());
@@ -94,12 +112,14 @@ Defined<EqualityPoint> crossing(const PopulationModel& made, double side) {
     return z;
   }
   EqualityPoint x = *z;
-  for (double* place : {&x.point, &x.point_low, &x.point_high}) {
-    *place = made.centre + made.scale * *place;
-  }
-  for (double* length : {&x.point_error, &x.jnd, &x.jnd_error, &x.jnd_low, &x.jnd_high}) {
-    *length *= made.scale;
-  }
+  x.point = made.centre + made.scale * z->point;
+  x.point_error = made.scale * z->point_error;
+  x.jnd = made.scale * z->jnd;
+  x.jnd_error = made.scale * z->jnd_error;
+  x.point_low = x.point - half_width(made) * x.point_error;
+  x.point_high = x.point + half_width(made) * x.point_error;
+  x.jnd_low = x.jnd - half_width(made) * x.jnd_error;
+  x.jnd_high = x.jnd + half_width(made) * x.jnd_error;
   return x;
 }
 
@@ -132,7 +152,7 @@ Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& ser
     participants.push_back(row.participant);
   }
   if (two) {
-    random.push_back(2);
+    random.insert(random.end(), {2, 3});
   }
   const auto fit =
       binomial_mixed_model(data_of(rows, two), BinomialLink::kProbit, participants, random);
@@ -140,14 +160,15 @@ Defined<PopulationModel> population_model(const std::vector<AnsweredSeries>& ser
     return Undefined{fit.because()};
   }
   made.model = *fit;
+  judge_by_participants(made);
   made.names = {"intercept", "level"};
   if (two) {
     made.names.insert(made.names.end(),
                       {conditions[1] + " less " + conditions[0], "level by condition"});
     const BinomialCoefficient& c = made.model.fixed.coefficients[2];
     made.condition_t = c.z;
-    made.condition_df = static_cast<int>(people) - 1;
-    made.condition_p = 2.0 * t_upper_tail(std::abs(c.z), made.condition_df);
+    made.condition_df = degrees_of_freedom(made);
+    made.condition_p = c.p;
   }
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     made.points.push_back({conditions[i], crossing(made, i == 0 ? -0.5 : 0.5)});

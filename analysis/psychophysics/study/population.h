@@ -15,15 +15,15 @@ struct PopulationPoint {
 };
 
 /// Probit mixed model over participants: P(answer 1) = Phi(a + b z + conditions + z conditions), z
-/// the standardised axis; intercept, slope and condition vary between participants, with all
-/// covariances.
+/// the standardised axis; intercept, slope and the condition's effect on each vary between
+/// participants, with all covariances. Intervals and p values are of Student's t with participants
+/// - 1 degrees of freedom, as participants are what varies.
 struct PopulationModel {
   std::vector<std::string> names;  // of the coefficients
   BinomialMixedModel model;
   double centre{0.0}, scale{1.0};       // z = (x - centre) / scale
   std::vector<PopulationPoint> points;  // a condition each
-  /// Whether the second condition differs from the first: Wald's test of its coefficient against
-  /// Student's t with participants - 1 degrees of freedom, as participants are what varies.
+  /// Whether the second condition differs from the first: Wald's test of its coefficient.
   /// Undefined unless there are two conditions.
   Defined<double> condition_p{Undefined{"there is one condition"}};
   double condition_t{0.0};

@@ -225,6 +225,26 @@ TEST(BinomialMixedModel, GivesTheAnswersOfLme4ForSpeedAndVibration) {
   const LikelihoodRatio test = likelihood_ratio(*smaller, *m);
   EXPECT_EQ(test.df, 2);
   EXPECT_NEAR(test.chi_squared, 2.0 * (302.3743143 - 284.4187119), 2e-4);
+  // x * c + (x * c | subject) of the standardised speed x and c = vibration - 1/2, where each
+  // person's slope changes in a way of its own: a singular fit in lme4, too.
+  double sum = 0.0, squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) {
+    sum += data.trials[i] * speeds[i];
+    squares += data.trials[i] * speeds[i] * speeds[i];
+    count += data.trials[i];
+  }
+  const double mean = sum / count, deviation = std::sqrt(squares / count - mean * mean);
+  for (Eigen::Index i = 0; i < std::ssize(speeds); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double x = (speeds[k] - mean) / deviation, c = vibrations[k] - 0.5;
+    data.predictors.row(i) << x, c, x * c;
+  }
+  const std::vector<std::size_t> all{0, 1, 2, 3};
+  const auto full = binomial_mixed_model(data, BinomialLink::kProbit, participants, all);
+  ASSERT_TRUE(full) << full.because();
+  expect_coefficients(full->fixed, {0.000222, 1.075369, 0.033186, -0.199356}, {}, 1e-3);
+  EXPECT_NEAR(full->fixed.log_likelihood, -284.180321, 1e-3);
+  EXPECT_NEAR(full->fixed.coefficients[3].error / 0.0554677, 1.0, 0.02);
 }
 
 // Two conditions that do not differ, people who differ in intercept and slope: the model with both
