@@ -70,11 +70,12 @@ Figure quantity_figure(const TrialsResult& result, const Quantity& q) {
         people.y.push_back(shown(result, q, *q.table.means[p][cell]));
       }
     }
-    if (q.means[cell]) {
+    const auto mean = mean_of(q, cell);
+    if (mean && q.table.participants(cell) > 1) {  // without an interval it is a point alone
       means.x.push_back(place);
-      means.y.push_back(shown(result, q, q.means[cell]->mean));
-      means.low.push_back(shown(result, q, q.means[cell]->low));
-      means.high.push_back(shown(result, q, q.means[cell]->high));
+      means.y.push_back(shown(result, q, *mean));
+      means.low.push_back(shown(result, q, q.means[cell] ? q.means[cell]->low : *mean));
+      means.high.push_back(shown(result, q, q.means[cell] ? q.means[cell]->high : *mean));
     }
     figure.alt += fmt::format("{}{}: {}", cell == 0 ? "" : "; ", figure.x_names.back().second,
                               mean_word(result, q, cell));

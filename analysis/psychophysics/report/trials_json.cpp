@@ -64,9 +64,13 @@ Json to_json(const Defined<T>& value) {
 Json to_json(const Quantity& q) {
   Json cells = Json::array();
   for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
+    Json mean = to_json(q.means[cell]);
+    if (const auto value = mean_of(q, cell)) {
+      mean["mean"] = *value;
+    }
     cells.push_back({{"condition", q.table.names[cell]},
                      {"participants", q.table.participants(cell)},
-                     {"mean", to_json(q.means[cell])}});
+                     {"mean", mean}});
   }
   Json made{{"name", q.name}, {"title", q.title}, {"unit", q.unit}, {"conditions", cells}};
   if (q.compared) {

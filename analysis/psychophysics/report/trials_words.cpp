@@ -19,10 +19,16 @@ const char* const kSimulatedTrials =
 
 namespace {
 
-const std::string kMissing = "–";
-
 /// Values of the threshold are on the axis, and means of them are levels.
 bool on_axis(const Quantity& q) { return q.name == "threshold"; }
+
+/// "6 participants", and why several have no interval.
+std::string people_word(const Quantity& q, std::size_t cell) {
+  const std::size_t people = q.table.participants(cell);
+  return counted(people, "participant") + (people > 1 && !q.means[cell] && mean_of(q, cell)
+                                               ? "; no interval, because " + q.means[cell].because()
+                                               : "");
+}
 
 void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std::string>& lines) {
   for (std::size_t cell = 0; cell < q.table.cells.size(); ++cell) {
@@ -31,7 +37,7 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
                     result.plan.by.empty() ? std::string() : ", " + q.table.names[cell],
                     mean_word(result, q, cell),
                     q.means[cell] || q.open.empty() ? unit_word(result, q) : std::string(),
-                    counted(q.table.participants(cell), "participant")));
+                    people_word(q, cell)));
   }
   if (!q.open.empty()) {
     lines.push_back(fmt::format(
@@ -259,15 +265,11 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
   const psychometric::Axis& axis = result.plan.function.axis;
   const auto level = [&](double value) { return on_axis(q) ? axis.level(value) : value; };
   if (!mean) {
-    if (q.table.participants(cell) != 1 || !q.open.empty()) {
+    const auto value = mean_of(q, cell);
+    if (!value) {
       return "no mean, because " + mean.because();
     }
-    for (const auto& row : q.table.means) {
-      if (row[cell]) {
-        return number(level(*row[cell]));
-      }
-    }
-    return kMissing;
+    return number(level(*value));
   }
   const double low = level(mean->low), high = level(mean->high);
   return fmt::format("{}, 95 % CI {} to {}", number_within(level(mean->mean), low, high),

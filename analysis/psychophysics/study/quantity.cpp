@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "analysis/statistics/design/changes.h"
@@ -34,6 +35,20 @@ MeanInterval within_range(MeanInterval mean, ValueRange range) {
     mean.high = odds / (odds + 1.0 / factor);
   }
   return mean;
+}
+
+std::optional<double> mean_of(const Quantity& q, std::size_t cell) {
+  if (q.means[cell]) {
+    return q.means[cell]->mean;
+  }
+  std::vector<double> values;
+  for (const auto& row : q.table.means) {
+    if (row[cell]) {
+      values.push_back(*row[cell]);
+    }
+  }
+  const auto all = moments(values);
+  return q.open.empty() && all ? std::optional(all->mean()) : std::nullopt;
 }
 
 namespace {
@@ -89,6 +104,9 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     Defined<MeanInterval> mean = mean_interval(means);
     if (beyond != open.end()) {
       mean = left_out(beyond->second, means.size());
+    } else if (mean && !(mean->deviation > 0.0)) {
+      // Student's t gives no width then, though the next participant may have another value.
+      mean = Undefined{"the values do not vary"};
     } else if (mean) {
       mean = within_range(*mean, range);
     }

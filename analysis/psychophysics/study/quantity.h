@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,12 +26,16 @@ struct Quantity {
   std::string title;  // "threshold"
   std::string unit;   // of the values; empty: a pure number
   DesignTable table;
-  std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open
+  std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open,
+                                             // or values do not vary
   std::vector<std::string> open;             // participants with open values, who are left out
   DesignTests tests;
   bool compared{false};  // there are at least two conditions
   bool headline{true};   // it stands on top of a report
 };
+
+/// The mean over participants where an interval may be missing; nothing if a value is open.
+std::optional<double> mean_of(const Quantity& q, std::size_t cell);
 
 /// The plan without the directions of its planned tests, which are of the study's first quantity:
 /// for quantities of another kind, such as widths beside thresholds.

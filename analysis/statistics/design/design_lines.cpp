@@ -70,9 +70,9 @@ std::string line_of_cell(const DesignTable& table, std::size_t cell) {
   const auto interval = mean_interval(means);
   const auto whole = moments(means);
   return fmt::format("{}: mean {} ({}, {})", table.names[cell],
-                     interval ? mean_with_interval(interval)
-                     : whole  ? number(whole->mean())
-                              : "not defined, because " + whole.because(),
+                     interval && interval->deviation > 0.0 ? mean_with_interval(interval)
+                     : whole                               ? number(whole->mean())
+                             : "not defined, because " + whole.because(),
                      counted(means.size(), "participant"), counted(table.counts[cell], "value"));
 }
 

@@ -66,9 +66,9 @@ trials::StudyTrial study_trial(std::size_t session, protocols::AnsweredTrial ans
 
 void note_values(const trials::Quantity& q, std::vector<NamedNumber>& values) {
   for (std::size_t cell = 0; cell < q.means.size(); ++cell) {
-    if (q.means[cell]) {
+    if (const auto mean = trials::mean_of(q, cell)) {
       const std::string where = q.table.names[cell].empty() ? "" : " of " + q.table.names[cell];
-      values.push_back({fmt::format("{}: mean{}", q.title, where), q.means[cell]->mean});
+      values.push_back({fmt::format("{}: mean{}", q.title, where), *mean});
     }
   }
   const auto note_family = [&](const analysis::TestFamily& family) {

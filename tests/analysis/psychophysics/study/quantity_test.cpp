@@ -33,7 +33,22 @@ TEST(QuantityTest, IntervalsOfSharesStayBetween0And1) {
   EXPECT_NEAR(log_odds(share.high) + log_odds(share.low), 2.0 * log_odds(share.mean), 1e-9);
   const MeanInterval others = interval_of({0.1, 0.0, 0.01}, ValueRange::kShare);
   EXPECT_NEAR(others.low, 1.0 - share.high, 1e-12);
-  EXPECT_EQ(interval_of({1.0, 1.0}, ValueRange::kShare).high, 1.0);
+}
+
+/// Nobody among six made an error: shares of up to a few per cent are not excluded.
+TEST(QuantityTest, ValuesThatDoNotVaryHaveAMeanAndNoInterval) {
+  std::vector<QuantityValue> none, same;
+  for (int person = 0; person < 6; ++person) {
+    none.push_back({"P" + std::to_string(person), {}, 0.0});
+    same.push_back({"P" + std::to_string(person), {}, 0.7});
+  }
+  const Quantity errors = quantity("share_wrong", "errors", "", none, {}, ValueRange::kShare);
+  ASSERT_FALSE(errors.means.at(0));
+  EXPECT_EQ(errors.means[0].because(), "the values do not vary");
+  EXPECT_EQ(mean_of(errors, 0), 0.0);
+  const Quantity times = quantity("time", "time", "s", same, {}, ValueRange::kPositive);
+  EXPECT_FALSE(times.means.at(0));
+  EXPECT_EQ(mean_of(times, 0), 0.7);
 }
 
 /// Two Weber fractions: Student's interval of their mean goes far below 0.
@@ -92,6 +107,7 @@ TEST(QuantityTest, AnOpenValueLeavesNoMean) {
   ASSERT_FALSE(thresholds.means[0]);
   EXPECT_EQ(thresholds.means[0].because(), "1 of 4 values have an interval with an open side (C)");
   EXPECT_EQ(thresholds.open, std::vector<std::string>{"C"});
+  EXPECT_FALSE(mean_of(thresholds, 0));
 }
 
 TEST(QuantityTest, WithABaselineChangesAreCompared) {
