@@ -1,11 +1,11 @@
 #include "analysis/bone_drilling/metrics/achieved.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "analysis/bone_drilling/metrics/study_bones.h"
+#include "core/bone/model/nearest_structure.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -61,15 +61,9 @@ std::string column_of(const std::string& structure) {
 }  // namespace
 
 std::vector<BoneLeft> untouched(const bone::BoneModel& bone) {
-  std::array<bool, 256> there{};
-  for (const std::uint8_t label : bone.labels) {
-    there[label] = true;
-  }
   std::vector<BoneLeft> left;
-  for (std::size_t label = 1; label < bone.structures.size(); ++label) {
-    if (bone.structures[label].vital && there[label]) {
-      left.push_back({bone.structures[label].name, static_cast<std::uint8_t>(label), std::nullopt});
-    }
+  for (const std::string& name : bone::vital_structures(bone)) {
+    left.push_back({name, std::nullopt});
   }
   return left;
 }
@@ -123,8 +117,8 @@ AchievedMeter::AchievedMeter(const ProcedurePlans& plans,
   }
   achieved_.left = untouched(*bone_);
   for (const BoneLeft& left : achieved_.left) {
-    fields_.push_back(
-        bones.field(bone_, left.label, std::min(kLeftReach, 250.0 * bone_->grid.spacing)));
+    fields_.push_back(bones.field(bone_, bone::labels_named(*bone_, left.structure),
+                                  std::min(kLeftReach, 250.0 * bone_->grid.spacing)));
   }
   nearest_.resize(fields_.size());
 }

@@ -21,7 +21,6 @@ inline constexpr double kLeftReach = 10e-3;
 /// Least thickness that a procedure left over a vital structure.
 struct BoneLeft {
   std::string structure;
-  std::uint8_t label{0};
   std::optional<double> thickness;  // from 0, opened or bare; nothing beyond kLeftReach [m]
 
   bool operator==(const BoneLeft&) const = default;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -48,9 +49,13 @@ Value injured_structures(const Parts& p) {
   if (p.summary.injuries.empty()) {
     return std::nullopt;
   }
-  return count(static_cast<std::uint64_t>(
-      std::count_if(p.summary.injuries.begin(), p.summary.injuries.end(),
-                    [](const Injury& injury) { return injury.voxels > 0; })));
+  std::set<std::string> injured;  // bones of old sessions have several labels of one name
+  for (const Injury& injury : p.summary.injuries) {
+    if (injury.voxels > 0) {
+      injured.insert(injury.structure);
+    }
+  }
+  return count(injured.size());
 }
 
 /// Mean diameter over the time of drilling.

@@ -174,6 +174,21 @@ int common_words(const std::string& a, const std::string& b) {
   return common;
 }
 
+/// The labels that voxels have, in ascending order.
+std::vector<std::uint8_t> labels_with_voxels(const BoneModel& model) {
+  std::array<bool, 256> there{};
+  for (const std::uint8_t label : model.labels) {
+    there[label] = true;
+  }
+  std::vector<std::uint8_t> labels;
+  for (std::size_t label = 1; label < there.size(); ++label) {
+    if (there[label]) {
+      labels.push_back(static_cast<std::uint8_t>(label));
+    }
+  }
+  return labels;
+}
+
 }  // namespace
 
 bool is_known_structure(std::string_view name) { return known_by(plain(name)) != nullptr; }
@@ -210,15 +225,24 @@ std::vector<Structure> known_structures() {
   return structures;
 }
 
-std::uint8_t label_named(const BoneModel& model, const std::string& name, const char* table) {
+std::optional<std::uint8_t> find_label(const BoneModel& model, const std::string& name) {
   const std::string known = structure_named(name, 0).name;
-  std::string names;
-  for (std::size_t label = 1; label < model.structures.size(); ++label) {
+  for (const std::uint8_t label : labels_with_voxels(model)) {
     const std::string& own = model.structures[label].name;
     if (own == name || own == known) {
-      return static_cast<std::uint8_t>(label);
+      return label;
     }
-    names += (names.empty() ? "" : ", ") + own;
+  }
+  return std::nullopt;
+}
+
+std::uint8_t label_named(const BoneModel& model, const std::string& name, const char* table) {
+  if (const auto label = find_label(model, name)) {
+    return *label;
+  }
+  std::string names;
+  for (const std::uint8_t label : labels_with_voxels(model)) {
+    names += (names.empty() ? "" : ", ") + model.structures[label].name;
   }
   throw InputError(fmt::format("{}: the bone {} has no structure '{}'; it has {}", table,
                                model.name, name, names));

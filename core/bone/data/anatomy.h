@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,8 +46,11 @@ bool is_known_structure(std::string_view name);
 /// change, also in one of the usual names, or one with a word of it.
 std::string nearest_structure(std::string_view name);
 
+/// The label of the structure with this name, or a form of it, of which the bone has voxels.
+std::optional<std::uint8_t> find_label(const BoneModel& model, const std::string& name);
 /// The label of a structure that a definition asks for. @param table  of the definition, for the
-/// sentence @throws InputError, with the names that there are, where the bone has none of it
+/// sentence @throws InputError, with the names of those that have voxels, where the bone has none
+/// of it
 std::uint8_t label_named(const BoneModel& model, const std::string& name, const char* table);
 
 /// All of Anatomy, by label; the first stands for nothing.

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <set>
 #include <sstream>
 
@@ -177,6 +178,14 @@ std::vector<std::uint8_t> labels_of(const Import& job, std::span<const float> va
   return labels;
 }
 
+std::array<bool, 256> used_labels(const BoneModel& model) {
+  std::array<bool, 256> used{};
+  for (const std::uint8_t label : model.labels) {
+    used[label] = true;
+  }
+  return used;
+}
+
 /// Every label that is used, in the bone or before in its file, gets a structure, named or not.
 void name_labels(const Import& job, std::vector<Structure> structures, const LabelVolumes& before,
                  BoneModel& model) {
@@ -196,10 +205,7 @@ void name_labels(const Import& job, std::vector<Structure> structures, const Lab
       }
     }
   }
-  std::array<bool, 256> used{};
-  for (const std::uint8_t label : model.labels) {
-    used[label] = true;
-  }
+  std::array<bool, 256> used = used_labels(model);
   for (std::size_t label = 1; label < used.size(); ++label) {
     used[label] = used[label] || before[label] > 0.0;
   }
@@ -219,11 +225,36 @@ void name_labels(const Import& job, std::vector<Structure> structures, const Lab
   model.structures = std::move(structures);
 }
 
-void leave_out(const Import& job, BoneModel& model) {
-  std::array<bool, 256> used{};
-  for (const std::uint8_t label : model.labels) {
-    used[label] = true;
+/// A name stands for one structure, and several names of a file can be forms of one known name, as
+/// "sigmoid sinus" and "dura" are. The first label with a name takes the voxels of all others.
+void join_equal_names(BoneModel& model) {
+  const std::array<bool, 256> used = used_labels(model);
+  std::array<std::uint8_t, 256> joined{};
+  std::iota(joined.begin(), joined.end(), std::uint8_t{0});
+  std::vector<Structure>& structures = model.structures;
+  for (std::size_t label = 2; label < structures.size(); ++label) {
+    const Structure& other = structures[label];
+    const auto first =
+        std::ranges::find(structures.begin() + 1, structures.end(), other.name, &Structure::name);
+    const auto kept = static_cast<std::size_t>(first - structures.begin());
+    if (other.name.empty() || kept == label) {
+      continue;
+    }
+    first->vital = first->vital || other.vital;
+    joined[label] = static_cast<std::uint8_t>(kept);
+    if (used[kept] && used[label]) {
+      model.notes.push_back(
+          fmt::format("labels {} and {} are one structure here, {}", kept, label, first->name));
+    }
+    structures[label] = {};
   }
+  for (std::uint8_t& label : model.labels) {
+    label = joined[label];
+  }
+}
+
+void leave_out(const Import& job, BoneModel& model) {
+  const std::array<bool, 256> used = used_labels(model);
   for (const std::string& name : job.options.without) {
     const Structure wanted = structure_named(name, 0);
     std::vector<std::string> known;
@@ -453,6 +484,7 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
   model.notes.insert(model.notes.begin(), head.notes.begin(), head.notes.end());
   add_structures(job, patient_frame(volume), model);
+  join_equal_names(model);
   leave_out(job, model);
   if (options.mirror) {
     model = mirrored(model);

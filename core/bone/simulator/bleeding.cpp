@@ -32,11 +32,7 @@ std::vector<std::uint8_t> bleeding_labels(const BoneModel& model,
                                           const BleedingParameters& parameters) {
   std::vector<std::uint8_t> labels;
   for (const std::string& name : parameters.structures) {
-    const std::string known = structure_named(name, 0).name;
-    const bool lacks = std::ranges::none_of(model.structures, [&](const Structure& structure) {
-      return structure.name == name || structure.name == known;
-    });
-    if (!lacks || !is_known_structure(name)) {
+    if (find_label(model, name) || !is_known_structure(name)) {
       labels.push_back(label_named(model, name, "bleeding"));
     }
   }

@@ -190,9 +190,7 @@ SoftTissue::SoftTissue(const BoneModel& model, std::span<const SoftTissueParamet
     const std::uint8_t label = label_named(model, p.structure, "soft_tissue");
     soft_[label] = true;
     const double held = p.suction / p.stiffness;  // how far a tube lifts it
-    if (!box_of(model, label).isEmpty()) {
-      parts_.push_back({p, label, SurfaceDepth(model, label, largest_radius + held)});
-    }
+    parts_.push_back({p, label, SurfaceDepth(model, label, largest_radius + held)});
   }
   own_ = touch();
   second_ = touch();

@@ -113,6 +113,24 @@ TEST(AchievedTest, ThreeLayersAreLeftOverTheNerve) {
   EXPECT_FALSE(a.economy());
 }
 
+// Bones of old sessions have several labels of one name.
+TEST(AchievedTest, LabelsOfOneNameAreOneStructure) {
+  bone::BoneModel model = block_with_nerve();
+  model.structures.push_back(model.structures.back());
+  for (int i = 10; i < 20; ++i) {
+    test::mark(model, {i, 10, 3}, 3);
+  }
+  Procedure p = test::procedure_on(model);
+  test::remove_in_turn(p, {{15, 10, 7}, {3, 10, 9}});
+  StudyBones bones;
+  const Achieved a = summarize(p, {}, bones).achieved;
+  ASSERT_EQ(a.left.size(), 1u);
+  EXPECT_NEAR(*a.left[0].thickness, 3e-3, 1e-12);
+  test::remove_in_turn(p, {{3, 10, 3}, {15, 10, 3}});
+  const ProcedureSummary opened = summarize(p, {}, bones);
+  EXPECT_EQ(judged_quantity(opened, "injured_structures"), 1.0);
+}
+
 TEST(AchievedTest, ThePathIsThatOfTheTip) {
   Procedure p = test::procedure_on(block_with_nerve());
   p.plans.cavity = std::make_shared<const subject::CavityPlan>(box_plan(*p.bone));

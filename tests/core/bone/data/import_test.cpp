@@ -124,6 +124,31 @@ TEST_F(ImportTest, NamesBringWhatIsKnownOfThem) {
   EXPECT_FALSE(model.structures[4].vital);
 }
 
+// "Sigmoid sinus" and "dura" are forms of one known name: no user of a name may meet a part of it.
+TEST_F(ImportTest, LabelsOfOneNameBecomeOneStructure) {
+  PlainVolume volume({4, 4, 4});
+  volume.more =
+      "label_01:=bone\nlabel_05:=sigmoid sinus\nlabel_06:=own\nlabel_08:=own\n"
+      "label_09:=Dura\n";
+  volume.fill([](const Eigen::Vector3d&) { return 1; });
+  volume.at(0, 0, 0) = 5;
+  volume.at(3, 3, 3) = volume.at(3, 3, 2) = 9;
+  volume.at(1, 0, 0) = 6;
+  volume.at(2, 0, 0) = 8;
+  const BoneModel model = load("v.nrrd", nrrd_of(volume));
+  EXPECT_EQ(std::ranges::count(model.labels, 5), 3);
+  EXPECT_EQ(std::ranges::count(model.labels, 6), 2);
+  EXPECT_EQ(std::ranges::count(model.structures, "sigmoid sinus and dura", &Structure::name), 1);
+  EXPECT_EQ(std::ranges::count(model.structures, "own", &Structure::name), 1);
+  EXPECT_THAT(model.notes,
+              ElementsAre("labels 6 and 8 are one structure here, own",
+                          "labels 5 and 9 are one structure here, sigmoid sinus and dura"));
+  LoadOptions without;
+  without.without = {"sigmoid sinus"};
+  const BoneModel rest = load("v.nrrd", nrrd_of(volume), without);
+  EXPECT_EQ(std::ranges::count(rest.labels, 0), 3);
+}
+
 /// A ball of labels [mm].
 PlainVolume ball(const Eigen::Matrix3d& steps, std::array<int, 3> size, double radius) {
   PlainVolume volume(size);

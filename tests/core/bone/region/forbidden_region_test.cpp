@@ -68,6 +68,16 @@ TEST(ForbiddenRegionTest, TheForceIsThatOfASpringFromTheMarginOn) {
   }
 }
 
+// A region around nothing would be one that nobody meets.
+TEST(ForbiddenRegionTest, AStructureWithoutVoxelsIsRefused) {
+  BoneModel bone = bone_with_nerve();
+  bone.structures.push_back({"tooth"});
+  RegionSetup setup = setup_of(RegionKind::kHard);
+  setup.structures = {"tooth"};
+  EXPECT_EQ(haptrial::test::message_of([&] { RegionMap(setup, bone, 2e-3); }),
+            "forbidden: the bone block has no structure 'tooth'; it has bone, facial nerve");
+}
+
 TEST(ForbiddenRegionTest, TheForceIsTheGradientOfItsEnergy) {
   for (const RegionKind kind : {RegionKind::kSoft, RegionKind::kHard}) {
     ForbiddenRegion region = region_of(setup_of(kind));

@@ -267,6 +267,12 @@ TEST(SoftTissueTest, StructuresThatAreNotThereAreRefused) {
   EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(layer(), carotid); }),
             "soft_tissue: the bone layer has no structure 'carotid'; it has bone, sigmoid sinus "
             "and dura");
+  BoneModel named = layer();
+  named.structures.push_back({"tooth"});
+  const SoftTissueParameters tooth[] = {{"tooth", 400.0, 1.0, 0.2}};
+  EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(named, tooth); }),
+            "soft_tissue: the bone layer has no structure 'tooth'; it has bone, sigmoid sinus and "
+            "dura");
   const SoftTissueParameters twice[] = {dura(1.0), {"sigmoid sinus", 400.0, 1.0, 0.2}};
   EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(layer(), twice); }),
             "soft_tissue: 'sigmoid sinus and dura' is named twice");
