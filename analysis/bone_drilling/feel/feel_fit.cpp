@@ -197,7 +197,7 @@ FeelFit fit_feel(double radius, std::span<const FeelSample> samples) {
   return fit;
 }
 
-std::vector<FeelSample> read_feel_samples(const CsvTable& table) {
+std::vector<FeelSample> read_feel_samples(const CsvTable& table, double radius) {
   const std::vector<double> depth = table.numbers(table.column("depth"));
   const std::vector<double> force = table.numbers(table.column("force"));
   std::vector<FeelSample> samples(table.rows());
@@ -217,11 +217,13 @@ std::vector<FeelSample> read_feel_samples(const CsvTable& table) {
                                                      : std::vector<double>(table.rows(), 0.0);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     // Other units give numbers far outside: mm, mN, mm/s.
-    constexpr double kDeepest = 0.03;     // [m]
+    constexpr double kHighest = 0.03;     // above bone [m]
     constexpr double kStrongest = 100.0;  // [N]
     constexpr double kFastest = 0.1;      // [m/s]
-    if (std::abs(depth[row]) > kDeepest) {
-      table.refuse(row, table.column("depth"), "a depth of at most 0.03 [m]");
+    if (!(depth[row] >= -kHighest && depth[row] < 2.0 * radius)) {
+      table.refuse(
+          row, table.column("depth"),
+          fmt::format("from {:g} to below the burr's diameter, {:g} [m]", -kHighest, 2.0 * radius));
     }
     if (std::abs(force[row]) > kStrongest) {
       table.refuse(row, table.column("force"), "a force of at most 100 [N]");

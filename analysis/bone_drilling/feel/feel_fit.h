@@ -52,12 +52,14 @@ double mean_latitude(double radius, double depth, double tilt) noexcept;
 ///
 /// Intervals are those of the linearised model with independent errors of one size in F and in v.
 /// @param radius  of the burr > 0 [m]
+/// @param samples  none as deep as the burr's diameter
 /// @throws InputError when fewer than 20 samples are in contact, or do not tell two gains apart
 FeelFit fit_feel(double radius, std::span<const FeelSample> samples);
 
 /// Reads the columns depth [m], force [N], and optionally feed [m/s] (an empty field: the burr is
-/// off) and tilt [rad]. @throws InputError for other tables, naming line and column, and
-/// for numbers that can only be in other units
-std::vector<FeelSample> read_feel_samples(const CsvTable& table);
+/// off) and tilt [rad]. @param radius  of the burr > 0 [m] @throws InputError for other tables,
+/// naming line and column, for numbers that can only be in other units, and for a depth at which
+/// the whole burr is immersed
+std::vector<FeelSample> read_feel_samples(const CsvTable& table, double radius);
 
 }  // namespace haptrial::analysis::drilling

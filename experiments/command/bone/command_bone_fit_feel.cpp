@@ -89,7 +89,7 @@ int bone_fit_feel(const FitFeelOptions& options) {
   const double radius = radius_of(*d, options.tool);
   const analysis::CsvTable table = analysis::CsvTable::load(options.file);
   const auto given =
-      tell(drilling::fit_feel(radius, drilling::read_feel_samples(table)), options.tool);
+      tell(drilling::fit_feel(radius, drilling::read_feel_samples(table, radius)), options.tool);
   // The definition says what it does not take, such as a second gain below the first.
   protocols::parse_bone_definition(with_values(d->text, options.definition, given),
                                    options.definition);

@@ -171,7 +171,7 @@ TEST(FeelFitTest, WhatCannotBeToldApartIsLeftOutOrRefused) {
 
 TEST(FeelFitTest, ATableIsReadAndRefusedByItsLine) {
   const auto read = [](const char* text) {
-    return read_feel_samples(CsvTable::parse(text, "press.csv"));
+    return read_feel_samples(CsvTable::parse(text, "press.csv"), kRadius);
   };
   const auto samples = read("time,depth,force,feed,tilt\n0,1e-4,0.5,,0.3\n1,2e-4,1,0.002,0\n");
   ASSERT_EQ(samples.size(), 2U);
@@ -187,6 +187,12 @@ TEST(FeelFitTest, ATableIsReadAndRefusedByItsLine) {
     return "";
   };
   EXPECT_THAT(refusal("depth,force\n0.4,1\n1e-4,1\n"), HasSubstr("press.csv:2: depth is '0.4'"));
+  // An immersed ball has no circle on the surface, by which the law of removal divides.
+  EXPECT_EQ(refusal("depth,force\n1e-4,1\n0.004,1\n"),
+            "press.csv:3: depth is '0.004'; allowed: from -0.03 to below the burr's diameter, "
+            "0.004 [m]");
+  EXPECT_EQ(refusal("depth,force\n-0.03,0\n0.0039,1\n"), "");
+  EXPECT_THAT(refusal("depth,force\n-0.4,1\n"), HasSubstr("depth is '-0.4'"));
   EXPECT_THAT(refusal("depth,force\n1e-4,500\n"), HasSubstr("allowed: a force of at most 100 [N]"));
   EXPECT_THAT(refusal("depth,force,feed\n1e-4,1,2\n"), HasSubstr("at most 0.1 [m/s]"));
   EXPECT_THAT(refusal("depth,force,tilt\n1e-4,1,90\n"), HasSubstr("allowed: an angle from 0"));
