@@ -3,7 +3,8 @@
 namespace haptrial {
 
 /// A key of a window that went down, or a character that was typed: these follow the keys that make
-/// them up. Letters and digits are their capital characters, 'P' or '1'.
+/// them up, and a key that is held types one. Keys of characters are the capital character that the
+/// keyboard's layout gives them, 'P' or '1'; the number pad's digits and Enter are like the others.
 struct KeyPress {
   static constexpr int kEscape = 256;
   static constexpr int kEnter = 257;

@@ -198,6 +198,20 @@ std::vector<std::uint8_t> VirtualDisplay::screenshot() const {
   return rgb;
 }
 
+void VirtualDisplay::relabel_keys(
+    const std::vector<std::pair<unsigned long, unsigned long>>& labels) const {
+  const X x;
+  std::vector<KeyCode> keys;
+  for (const auto& [from, to] : labels) {
+    keys.push_back(x.get<decltype(&XKeysymToKeycode)>("XKeysymToKeycode")(x.display(), from));
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    KeySym typed = labels[i].second;
+    x.get<decltype(&XChangeKeyboardMapping)>("XChangeKeyboardMapping")(x.display(), keys[i], 1,
+                                                                       &typed, 1);
+  }
+}
+
 void VirtualDisplay::press_key(const std::string& title, unsigned long keysym) const {
   hold_key(title, keysym);
   release_key(title, keysym);

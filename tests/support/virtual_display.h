@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/support/temporary_folder.h"
@@ -25,6 +26,9 @@ class VirtualDisplay {
   int width() const { return width_; }
   int height() const { return height_; }
 
+  /// Gives keys other characters, as another layout does, for windows that open later: the key of
+  /// each first keysym types the second one instead.
+  void relabel_keys(const std::vector<std::pair<unsigned long, unsigned long>>& labels) const;
   /// Presses a key in the window of that title. @param keysym  as X names it: 'p', ' ', 0xff1b for
   /// Escape
   void press_key(const std::string& title, unsigned long keysym) const;  // and let it go

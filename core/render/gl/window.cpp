@@ -67,7 +67,27 @@ struct DestroyWindow {
   void operator()(GLFWwindow* window) const { glfwDestroyWindow(window); }
 };
 
+bool is_letter_or_digit(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+}
+
+/// The capital letter, digit or sign that the keyboard's layout gives to a key. A key of another
+/// alphabet, and a digit that is typed with Shift, count by their place on a US keyboard.
+int character_of(int glfw_key) {
+  const char* name = glfwGetKeyName(glfw_key, 0);
+  const bool ascii = name != nullptr && name[0] > ' ' && name[0] < 0x7f && name[1] == '\0';
+  const bool is_digit_key = glfw_key >= GLFW_KEY_0 && glfw_key <= GLFW_KEY_9;
+  if (ascii && (!is_digit_key || is_letter_or_digit(name[0]))) {
+    return name[0] >= 'a' && name[0] <= 'z' ? name[0] - 'a' + 'A' : name[0];
+  }
+  return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_GRAVE_ACCENT ? glfw_key
+                                                                         : KeyPress::kOther;
+}
+
 int key_of(int glfw_key) {
+  if (glfw_key >= GLFW_KEY_KP_0 && glfw_key <= GLFW_KEY_KP_9) {
+    return '0' + (glfw_key - GLFW_KEY_KP_0);
+  }
   switch (glfw_key) {
     case GLFW_KEY_ESCAPE:
       return KeyPress::kEscape;
@@ -87,10 +107,16 @@ int key_of(int glfw_key) {
     case GLFW_KEY_UP:
       return KeyPress::kUp;
     default:
-      return glfw_key >= GLFW_KEY_SPACE && glfw_key <= GLFW_KEY_GRAVE_ACCENT ? glfw_key
-                                                                             : KeyPress::kOther;
+      return character_of(glfw_key);
   }
 }
+
+/// A key that is held, with the code that it had when it went down: the layout may change
+/// meanwhile.
+struct HeldKey {
+  int glfw_key;
+  int code;
+};
 
 }  // namespace
 
@@ -102,7 +128,8 @@ struct Window::Impl {
   int height{0};
   double refresh_rate{0.0};
   std::vector<KeyPress> keys;
-  std::vector<int> held;
+  std::vector<HeldKey> held;
+  bool repeats{false};  // the newest press is that of a key that was down already
   Pointer pointer;
   std::uint32_t pressed{0};  // buttons that went down in the last poll, and may be up again
 
@@ -162,15 +189,20 @@ void Window::Impl::open(const WindowOptions& options) {
 void Window::Impl::listen() {
   glfwSetWindowUserPointer(window.get(), this);
   glfwSetKeyCallback(window.get(), [](GLFWwindow* w, int key, int, int action, int) {
+    if (action == GLFW_RELEASE) {  // also when another window takes the keyboard
+      std::erase_if(of(w).held, [key](const HeldKey& each) { return each.glfw_key == key; });
+      return;
+    }
+    of(w).repeats = action == GLFW_REPEAT;
     if (action == GLFW_PRESS) {
       of(w).keys.push_back({key_of(key)});
-      of(w).held.push_back(key_of(key));
-    } else if (action == GLFW_RELEASE) {  // also when another window takes the keyboard
-      std::erase(of(w).held, key_of(key));
+      of(w).held.push_back({key, key_of(key)});
     }
   });
   glfwSetCharCallback(window.get(), [](GLFWwindow* w, unsigned int character) {
-    of(w).keys.push_back({KeyPress::kOther, static_cast<char32_t>(character)});
+    if (!of(w).repeats) {  // a finger that rests on a key makes no number longer
+      of(w).keys.push_back({KeyPress::kOther, static_cast<char32_t>(character)});
+    }
   });
   glfwSetCursorPosCallback(window.get(),
                            [](GLFWwindow* w, double x, double y) { of(w).point_at(x, y); });
@@ -216,7 +248,13 @@ Image Window::read() { return read_frame(impl_->gl, impl_->width, impl_->height)
 
 bool Window::close_asked() const { return glfwWindowShouldClose(impl_->window.get()) != 0; }
 std::vector<KeyPress> Window::take_keys() { return std::exchange(impl_->keys, {}); }
-std::vector<int> Window::held_keys() const { return impl_->held; }
+std::vector<int> Window::held_keys() const {
+  std::vector<int> codes;
+  for (const HeldKey& key : impl_->held) {
+    codes.push_back(key.code);
+  }
+  return codes;
+}
 Pointer Window::pointer() const {
   Pointer pointer = impl_->pointer;
   pointer.buttons |= impl_->pressed;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <thread>
@@ -121,6 +122,63 @@ TEST_F(WindowTest, KeysMouseAndCloseButtonArrive) {
   EXPECT_EQ(window.pointer().wheel, 1.0);
   display_->ask_to_close("small");
   polled([&] { return window.close_asked(); });
+}
+
+// A German layout exchanges Y and Z; a French one moves A, Q and M and types digits with Shift; the
+// key of F has another alphabet on a Russian one.
+TEST_F(WindowTest, AKeyIsTheCharacterThatTheLayoutGivesIt) {
+  constexpr unsigned long kCyrillicA = 0x6c1, kPadOne = 0xffb1, kPadEnter = 0xff8d;
+  display_->relabel_keys({{'y', 'z'},
+                          {'z', 'y'},
+                          {'a', 'q'},
+                          {'q', 'a'},
+                          {';', 'm'},
+                          {'m', ','},
+                          {'1', '&'},
+                          {'f', kCyrillicA}});
+  Window window(small());
+  for (const unsigned long keysym : std::initializer_list<unsigned long>{
+           'z', 'y', 'a', 'q', 'm', ',', '&', kCyrillicA, kPadOne, kPadEnter}) {
+    display_->press_key("small", keysym);
+  }
+  std::vector<int> keys;
+  std::u32string typed;
+  test::wait_until([&] {
+    window.poll();
+    for (const KeyPress& key : window.take_keys()) {
+      key.character == 0 ? keys.push_back(key.key) : typed.push_back(key.character);
+    }
+    return keys.size() == 10;
+  });
+  EXPECT_THAT(keys,
+              ElementsAre('Z', 'Y', 'A', 'Q', 'M', ',', '1', 'F', '1', int{KeyPress::kEnter}));
+  EXPECT_EQ(typed, U"zyaqm,&а");
+}
+
+TEST_F(WindowTest, AKeyThatIsHeldTypesOnceAndLetsGoOfItselfAlone) {
+  constexpr unsigned long kPadFive = 0xffb5;
+  Window window(small());
+  std::vector<KeyPress> keys;
+  const auto poll_until = [&](const std::vector<int>& held) {
+    test::wait_until([&] {
+      window.poll();
+      for (const KeyPress& key : window.take_keys()) {
+        keys.push_back(key);
+      }
+      return window.held_keys() == held;
+    });
+  };
+  for (int i = 0; i < 3; ++i) {
+    display_->hold_key("small", '5');  // as a keyboard repeats it
+  }
+  display_->hold_key("small", kPadFive);
+  poll_until({'5', '5'});
+  EXPECT_EQ(std::ranges::count(keys, KeyPress{KeyPress::kOther, U'5'}), 1);
+  EXPECT_EQ(std::ranges::count(keys, KeyPress{'5'}), 2);
+  display_->release_key("small", kPadFive);
+  poll_until({'5'});
+  display_->release_key("small", '5');
+  poll_until({});
 }
 
 TEST_F(WindowTest, AClickShorterThanAPictureIsSeen) {
