@@ -59,7 +59,7 @@ void ChoiceKind::read(Table& table, Question& question) const {
 }
 
 /// Trials state the keys of each choice.
-std::vector<HeardKey> ChoiceKind::heard_keys(const Question&) const { return {}; }
+std::vector<int> ChoiceKind::heard_keys(const Question&) const { return {}; }
 
 KeyEffect ChoiceKind::press(const Question& question, const KeyPress& key,
                             AnswerDraft& draft) const noexcept {

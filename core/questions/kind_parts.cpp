@@ -60,14 +60,9 @@ std::optional<double> number_in(std::string_view text) noexcept {
                                                                      : std::nullopt;
 }
 
-std::vector<HeardKey> digits_and(std::initializer_list<int> others) {
-  std::vector<HeardKey> keys;
-  for (int digit = '0'; digit <= '9'; ++digit) {
-    keys.push_back({digit, {digit}});
-  }
-  for (const int key : others) {
-    keys.push_back({key, {key}});
-  }
+std::vector<int> digits_and(std::initializer_list<int> others) {
+  std::vector<int> keys{'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  keys.insert(keys.end(), others);
   return keys;
 }
 

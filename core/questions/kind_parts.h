@@ -34,7 +34,7 @@ void read_range(Table& table, const std::string& key, Question& question);
 /// no allocation, lock, I/O or throw.
 std::optional<double> number_in(std::string_view text) noexcept;
 
-/// The keys 0 to 9 and the given ones, each as itself.
-std::vector<HeardKey> digits_and(std::initializer_list<int> others);
+/// The keys 0 to 9 and the given ones.
+std::vector<int> digits_and(std::initializer_list<int> others);
 
 }  // namespace haptrial::questions

@@ -45,17 +45,9 @@ void NumberKind::read(Table& table, Question& question) const {
   number_schema().read(table, question);
 }
 
-std::vector<HeardKey> NumberKind::heard_keys(const Question& question) const {
-  std::vector<HeardKey> keys;
-  for (int digit = '0'; digit <= '9'; ++digit) {
-    keys.push_back({digit, {KeyPress::kOther, static_cast<char32_t>(digit)}});
-  }
-  keys.push_back({'.', {KeyPress::kOther, U'.'}});
-  keys.push_back({KeyPress::kBackspace, {KeyPress::kBackspace}});
-  if (question.low < 0.0) {
-    keys.push_back({'-', {KeyPress::kOther, U'-'}});
-  }
-  return keys;
+std::vector<int> NumberKind::heard_keys(const Question& question) const {
+  return question.low < 0.0 ? digits_and({'.', KeyPress::kBackspace, '-'})
+                            : digits_and({'.', KeyPress::kBackspace});
 }
 
 KeyEffect NumberKind::press(const Question&, const KeyPress& key,

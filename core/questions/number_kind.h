@@ -11,7 +11,7 @@ class NumberKind final : public QuestionKind {
   QuestionTraits traits() const noexcept override { return {.types = true}; }
   std::string key() const override { return "number"; }
   void read(Table& table, Question& question) const override;
-  std::vector<HeardKey> heard_keys(const Question& question) const override;
+  std::vector<int> heard_keys(const Question& question) const override;
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override;
   bool is_complete(const Question& question, const AnswerDraft& draft) const noexcept override;

@@ -24,12 +24,6 @@ enum class KeyEffect {
   kGiven     // the answer is given with it
 };
 
-/// A key of the window that a trial listens to, and the press that it stands for.
-struct HeardKey {
-  int code{0};  // as KeyPress::key
-  KeyPress press;
-};
-
 /// Traits of a kind that the places know that ask questions.
 struct QuestionTraits {
   bool asks{true};            // false: a text that is only read
@@ -59,9 +53,9 @@ class QuestionKind {
   /// Reads that key and those that belong to it. Problems are noted in the table.
   virtual void read(Table& table, Question& question) const = 0;
 
-  /// Keys of the window that press() knows, for trials, whose keys are stated beforehand. Typed
-  /// characters are heard in any case by a kind that types.
-  virtual std::vector<HeardKey> heard_keys(const Question& question) const = 0;
+  /// Keys of the window (KeyPress::key) that have a meaning for the answer, for trials, whose keys
+  /// are stated beforehand. A kind that types also gets the characters, each as a press of its own.
+  virtual std::vector<int> heard_keys(const Question& question) const = 0;
   /// A key but Enter, which gives a complete answer.
   virtual KeyEffect press(const Question& question, const KeyPress& key,
                           AnswerDraft& draft) const noexcept = 0;

@@ -13,7 +13,7 @@ class ReadingKind final : public QuestionKind {
   }
   std::string key() const override { return ""; }
   void read(Table& table, Question& question) const override;
-  std::vector<HeardKey> heard_keys(const Question&) const override { return {}; }
+  std::vector<int> heard_keys(const Question&) const override { return {}; }
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override;
   bool is_complete(const Question&, const AnswerDraft&) const noexcept override { return true; }

@@ -101,7 +101,7 @@ void ScaleKind::read(Table& table, Question& question) const {
   scale_schema().read(table, question);
 }
 
-std::vector<HeardKey> ScaleKind::heard_keys(const Question&) const {
+std::vector<int> ScaleKind::heard_keys(const Question&) const {
   return digits_and({KeyPress::kLeft, KeyPress::kRight, KeyPress::kUp, KeyPress::kDown});
 }
 

@@ -13,7 +13,7 @@ class ScaleKind final : public QuestionKind {
   QuestionTraits traits() const noexcept override { return {.marks = true}; }
   std::string key() const override { return "scale"; }
   void read(Table& table, Question& question) const override;
-  std::vector<HeardKey> heard_keys(const Question& question) const override;
+  std::vector<int> heard_keys(const Question& question) const override;
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override;
   void move_mark(const Question& question, double share,

@@ -19,9 +19,7 @@ bool WordsKind::is_stated(Table& table) const {
   return table.has(key()) && table.boolean(key());
 }
 
-std::vector<HeardKey> WordsKind::heard_keys(const Question&) const {
-  return {{KeyPress::kBackspace, {KeyPress::kBackspace}}};
-}
+std::vector<int> WordsKind::heard_keys(const Question&) const { return {KeyPress::kBackspace}; }
 
 KeyEffect WordsKind::press(const Question& question, const KeyPress& key,
                            AnswerDraft& draft) const noexcept {

@@ -14,7 +14,7 @@ class WordsKind final : public QuestionKind {
   std::string key() const override { return "words"; }
   bool is_stated(Table& table) const override;
   void read(Table&, Question&) const override {}
-  std::vector<HeardKey> heard_keys(const Question& question) const override;
+  std::vector<int> heard_keys(const Question& question) const override;
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override;
   bool is_complete(const Question& question, const AnswerDraft& draft) const noexcept override;

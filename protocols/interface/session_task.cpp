@@ -62,8 +62,8 @@ bool SessionTask::stopped() const noexcept {
 SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
   SessionInputs inputs;
   if (window_ != nullptr) {
-    inputs.keys = window_->held();
     inputs.typed = window_->take_typed();
+    inputs.keys = window_->held();  // after the characters, for which keys wait
     inputs.pointer = window_->pointer();
   }
   if (pedal_ != nullptr) {

@@ -17,7 +17,7 @@ class WindowInput {
  public:
   // Screen's thread.
   /// @param functions  DeviceReading::keys
-  void hold(std::uint32_t functions) noexcept { held_.store(functions, std::memory_order_relaxed); }
+  void hold(std::uint32_t functions) noexcept { held_.store(functions, std::memory_order_release); }
   /// Place and buttons may arrive a tick apart.
   void point(const device::WindowPointer& pointer) noexcept {
     pointer_x_.store(pointer.x, std::memory_order_relaxed);
@@ -33,7 +33,15 @@ class WindowInput {
   }
 
   // Servo thread.
-  std::uint32_t held() const noexcept { return held_.load(std::memory_order_relaxed); }
+  /// Keys wait for the characters that were typed before them: Enter ends no answer that is not
+  /// complete yet.
+  std::uint32_t held() noexcept {
+    const std::uint32_t now = held_.load(std::memory_order_acquire);
+    const bool all_taken =
+        taken_.load(std::memory_order_relaxed) == written_.load(std::memory_order_acquire);
+    seen_ = all_taken ? now : seen_;
+    return seen_;
+  }
   device::WindowPointer pointer() const noexcept {
     const std::uint32_t buttons = pointer_buttons_.load(std::memory_order_acquire);
     return {pointer_x_.load(std::memory_order_relaxed), buttons};
@@ -53,6 +61,7 @@ class WindowInput {
   static constexpr std::size_t kRoom = 64;
 
   std::atomic<std::uint32_t> held_{0};
+  std::uint32_t seen_{0};  // held keys as the servo thread has them
   std::array<char32_t, kRoom> typed_{};
   std::atomic<std::size_t> written_{0}, taken_{0};
   std::atomic<double> pointer_x_{std::numeric_limits<double>::quiet_NaN()};

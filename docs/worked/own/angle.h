@@ -33,8 +33,8 @@ class AngleKind final : public questions::QuestionKind {
     questions::steps_schema("angle", "Lowest and highest angle, in degrees", "another answer")
         .read(table, question);
   }
-  std::vector<questions::HeardKey> heard_keys(const Question&) const override {
-    return {{KeyPress::kLeft, {KeyPress::kLeft}}, {KeyPress::kRight, {KeyPress::kRight}}};
+  std::vector<int> heard_keys(const Question&) const override {
+    return {KeyPress::kLeft, KeyPress::kRight};
   }
   KeyEffect press(const Question& question, const KeyPress& key,
                   AnswerDraft& draft) const noexcept override {

@@ -186,12 +186,12 @@ std::vector<const QuestionKind*> kinds_in_trials() {
 /// or the mouse moves hears no other.
 void hear_keys(TrialQuestion& question, KeyBits& keys) {
   const bool by_keys = question.mark.by == MarkedBy::kKeys;
-  for (const questions::HeardKey& key : question.kind->heard_keys(question)) {
+  for (const int key : question.kind->heard_keys(question)) {
     if (by_keys) {
-      question.heard.push_back({keys.bit_of(key.code), key.press});
+      question.heard.push_back({keys.bit_of(key), key});
     }
   }
-  question.heard.push_back({keys.bit_of(KeyPress::kEnter), {KeyPress::kEnter}});
+  question.heard.push_back({keys.bit_of(KeyPress::kEnter), KeyPress::kEnter});
   if (question.kind->traits().any_character) {
     keys.use_characters();
   }

@@ -54,7 +54,7 @@ enum class Pace : std::uint8_t { kInTime, kTooFast, kTooSlow };
 /// A key that an answer hears in a trial.
 struct HeardBit {
   std::uint32_t bit{0};  // of KeyBits
-  KeyPress press;        // that it stands for
+  int key{0};            // KeyPress::key
 };
 
 /// A question to the participant after the last interval. Its name is that in /responses and in

@@ -534,7 +534,7 @@ void TrialPass::listen_to_keys(const TrialQuestion& question, char32_t typed,
                                Answer& answer) noexcept {
   const questions::QuestionKind& kind = *question.kind;
   const std::uint32_t keys = repeated_keys(question);
-  if (typed != 0 && kind.traits().any_character) {
+  if (typed != 0 && kind.traits().types) {
     kind.press(question, {KeyPress::kOther, typed}, draft_);
     view_.refused = false;
   }
@@ -542,10 +542,9 @@ void TrialPass::listen_to_keys(const TrialQuestion& question, char32_t typed,
     if ((keys & each.bit) == 0) {
       continue;
     }
-    const bool ends =
-        each.press.key == KeyPress::kEnter
-            ? (pressed_keys_ & each.bit) != 0
-            : kind.press(question, each.press, draft_) == questions::KeyEffect::kGiven;
+    const bool ends = each.key == KeyPress::kEnter ? (pressed_keys_ & each.bit) != 0
+                                                   : kind.press(question, {each.key}, draft_) ==
+                                                         questions::KeyEffect::kGiven;
     view_.refused = ends && !kind.is_complete(question, draft_);
     if (view_.refused) {
       draft_ = {};

@@ -28,11 +28,11 @@ TrialQuestion question_of(const questions::QuestionKind& kind) {
   question.step = 5.0;
   question.most_bytes = record::kAnswerBytes;
   std::uint32_t bit = 1;
-  for (const questions::HeardKey& key : kind.heard_keys(question)) {
-    question.heard.push_back({bit, key.press});
+  for (const int key : kind.heard_keys(question)) {
+    question.heard.push_back({bit, key});
     bit <<= 1;
   }
-  question.heard.push_back({bit, {KeyPress::kEnter}});
+  question.heard.push_back({bit, KeyPress::kEnter});
   return question;
 }
 
@@ -40,6 +40,7 @@ class AnswersByKeysTest : public testing::Test {
  protected:
   void ask(const questions::QuestionKind& kind) {
     question_ = question_of(kind);
+    question_.low = low_;
     Stage feel;
     feel.until.time = kStage * kDt;
     std::vector<scene::Scene> scenes;
@@ -60,22 +61,33 @@ class AnswersByKeysTest : public testing::Test {
       view_ = *pass_->tick(reading, kDt).shown.as<TrialView>();
     }
   }
-  std::uint32_t bit_of(const KeyPress& press) const {
+  std::uint32_t bit_of(int key) const {
     for (const HeardBit& each : question_.heard) {
-      if (each.press == press) {
+      if (each.key == key) {
         return each.bit;
       }
     }
     ADD_FAILURE() << "the question does not hear this key";
     return 0;
   }
-  void press(const KeyPress& key, int ticks = 30) {
+  void press(int key, int ticks = 30) {
     hold(bit_of(key), ticks);
     hold(0, 30);
   }
-  void enter() { press({KeyPress::kEnter}); }
+  /// A digit comes as a key that the question hears and as a character, which a held key types
+  /// once.
+  void type(const std::u32string& text) {
+    for (const char32_t c : text) {
+      const std::uint32_t key = c >= U'0' && c <= U'9' ? bit_of(static_cast<int>(c)) : 0;
+      hold(key, 1, c);
+      hold(key, 700);
+      hold(0, 30);
+    }
+  }
+  void enter() { press(KeyPress::kEnter); }
   record::ResponseRow row() const { return response_rows(*pass_, {question_}, {-1}).at(0); }
 
+  double low_{0.0};
   TrialQuestion question_;
   std::optional<TrialPass> pass_;
   TrialView view_;
@@ -86,11 +98,11 @@ TEST_F(AnswersByKeysTest, AMarkHasNoPlaceBeforeItIsMoved) {
   enter();
   EXPECT_EQ(pass_->state(), PassState::kRunning);
   EXPECT_TRUE(view_.refused);
-  press({KeyPress::kRight});
+  press(KeyPress::kRight);
   EXPECT_FALSE(view_.refused);
   EXPECT_EQ(view_.chosen, 11) << "one step from the middle of 20";
-  press({KeyPress::kLeft});
-  press({KeyPress::kDown});
+  press(KeyPress::kLeft);
+  press(KeyPress::kDown);
   enter();
   ASSERT_EQ(pass_->state(), PassState::kCompleted);
   EXPECT_EQ(row().value, 45.0);
@@ -102,35 +114,41 @@ TEST_F(AnswersByKeysTest, AMarkHasNoPlaceBeforeItIsMoved) {
 // The first repetition comes after 0.4 s, and one every 50 ms after it: 1 + 5 steps in 0.62 s.
 TEST_F(AnswersByKeysTest, AKeyThatIsHeldMovesTheMarkOn) {
   ask(questions::scale_kind());
-  press({KeyPress::kRight}, 620);
+  press(KeyPress::kRight, 620);
   EXPECT_EQ(view_.chosen, 10 + 6);
-  press({KeyPress::kRight}, 2000);
+  press(KeyPress::kRight, 2000);
   EXPECT_EQ(view_.chosen, 20);
-  press({'8'});
-  press({'5'});
+  press('8');
+  press('5');
   EXPECT_EQ(view_.chosen, 17) << "digits say a number";
-  hold(bit_of({KeyPress::kEnter}), 1);
+  hold(bit_of(KeyPress::kEnter), 1);
   ASSERT_EQ(pass_->state(), PassState::kCompleted);
   EXPECT_EQ(row().value, 85.0);
 }
 
 TEST_F(AnswersByKeysTest, ANumberBeyondItsBoundsIsTypedAgain) {
   ask(questions::number_kind());
-  for (const char32_t digit : std::u32string(U"101")) {
-    press({KeyPress::kOther, digit});
-  }
+  type(U"101");
   EXPECT_STREQ(view_.typed.data(), "101");
   enter();
   EXPECT_TRUE(view_.refused);
   EXPECT_STREQ(view_.typed.data(), "");
-  for (const char32_t digit : std::u32string(U"42.53")) {
-    press({KeyPress::kOther, digit}, 700);  // a character does not repeat itself
-  }
-  press({KeyPress::kBackspace});
-  hold(0, 10, U'7');  // the character of a key that was heard already
+  type(U"42.53");
+  press(KeyPress::kBackspace);
   enter();
   ASSERT_EQ(pass_->state(), PassState::kCompleted);
   EXPECT_EQ(row().value, 42.5);
+}
+
+TEST_F(AnswersByKeysTest, ANumberIsTheCharactersThatAreTyped) {
+  low_ = -10.0;
+  for (const auto& [typed, value] : {std::pair{U"2,5", 2.5}, {U"-5", -5.0}, {U"37", 37.0}}) {
+    ask(questions::number_kind());
+    type(typed);
+    enter();
+    ASSERT_EQ(pass_->state(), PassState::kCompleted);
+    EXPECT_EQ(row().value, value);
+  }
 }
 
 TEST_F(AnswersByKeysTest, WordsOfAnyScriptAreTyped) {
@@ -138,7 +156,7 @@ TEST_F(AnswersByKeysTest, WordsOfAnyScriptAreTyped) {
   for (const char32_t c : std::u32string(U"räu粗x")) {
     hold(0, 1, c);
   }
-  press({KeyPress::kBackspace});
+  press(KeyPress::kBackspace);
   EXPECT_STREQ(view_.typed.data(), "räu粗");
   enter();
   ASSERT_EQ(pass_->state(), PassState::kCompleted);
