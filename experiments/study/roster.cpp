@@ -152,11 +152,15 @@ class RosterMaker {
                       "folder of one study",
                       found.file.string(), d_.file_name, sentence_of(changes.binding)));
     }
+    if (request_.any_seed) {
+      return;
+    }
     seed_ = request_.seed ? request_.seed : seed_ ? seed_ : found.info.seed;
     if (*seed_ != found.info.seed) {
       throw InputError(
           fmt::format("{}: was recorded with seed {}, not with {}; orders are balanced "
-                      "over the sessions of one seed",
+                      "over the sessions of one seed: haptrial roster --exclude takes out "
+                      "who has another",
                       found.file.string(), found.info.seed, *seed_));
     }
   }

@@ -93,6 +93,7 @@ struct RosterRequest {
   std::filesystem::path folder;         // of session files; need not exist yet
   std::optional<std::uint64_t> seed{};  // default: that of the sessions, else 1
   FindCase find_case{};                 // of a study with a curriculum
+  bool any_seed{false};  // sessions of other seeds are no error; somebody may be excluded for it
 };
 
 /// Numbers 1 to n are the participants that the definition plans, and a number says the group

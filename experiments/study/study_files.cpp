@@ -230,6 +230,23 @@ std::string remark_on_repeated(const std::vector<fs::path>& files) {
                                         fmt::join(repeated, "; "));
 }
 
+/// Orders of conditions are balanced over the participants of one seed.
+std::string remark_on_seeds(const std::vector<fs::path>& files) {
+  std::map<std::uint64_t, std::vector<fs::path>> by_seed;
+  for (const fs::path& file : files) {
+    by_seed[record::SessionReader(file).info().seed].push_back(file);
+  }
+  std::vector<std::string> seeds;
+  for (const auto& [seed, own] : by_seed) {
+    seeds.push_back(fmt::format("seed {}: {}", seed, names_of(own)));
+  }
+  return seeds.size() < 2 ? ""
+                          : fmt::format(
+                                "Recorded with different seeds, over which orders are not "
+                                "balanced: {}.",
+                                fmt::join(seeds, "; "));
+}
+
 /// Warns of participants who may be one person with two names.
 std::vector<std::string> remarks_on_names(const std::vector<fs::path>& files) {
   std::set<std::string> people;
@@ -337,6 +354,9 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
                     fmt::join(sorted.copies, ", ")));
   }
   if (const std::string remark = remark_on_repeated(study.files); !remark.empty()) {
+    study.remarks.push_back(remark);
+  }
+  if (const std::string remark = remark_on_seeds(study.files); !remark.empty()) {
     study.remarks.push_back(remark);
   }
   if (!sorted.declined.empty()) {

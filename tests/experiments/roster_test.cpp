@@ -273,7 +273,11 @@ TEST_F(RosterTest, WhatIsWrongIsSaid) {
   record("P02", 1, false, 2);
   EXPECT_THAT(test::message_of<InputError>([&] { roster(); }),
               HasSubstr("was recorded with seed 2, not with 1"));
-  fs::remove(sessions_ / "P02-session-1.h5");
+  const auto excluded = haptrial("roster " + quoted(definition_) + " " + quoted(sessions_) +
+                                 " --exclude P02 --because 'another seed'");
+  EXPECT_EQ(excluded.status, 0) << excluded.errors;
+  EXPECT_TRUE(fs::exists(sessions_ / "excluded/P02-session-1.h5"));
+  EXPECT_EQ(roster().seed, 1u) << "excluded sessions may have any seed";
   test::write_text(definition_, std::string(kGroups) + "onset = { speed_above = 0.1 }\n");
   const Experiment changed = load_experiment(definition_);
   EXPECT_THAT(test::message_of<InputError>([&] {
@@ -301,6 +305,27 @@ TEST_F(RosterTest, RunWithoutASubjectTakesTheNextOne) {
   const auto pilot = haptrial(run + " --pilot");
   EXPECT_EQ(pilot.status, 2);
   EXPECT_THAT(pilot.errors, HasSubstr("add --subject"));
+}
+
+TEST_F(RosterTest, RunTakesTheSeedOfTheSessionsInTheFolder) {
+  record("P01", 1, false, 5);
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  const auto refused = haptrial(run + " --subject P03 --seed 1");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("P01-session-1.h5: was recorded with seed 5, not with 1"));
+  EXPECT_FALSE(fs::exists(sessions_ / "P03-session-1.h5"));
+  const auto named = haptrial(run + " --subject P03 --session 1");
+  ASSERT_EQ(named.status, 0) << named.errors;
+  const auto seed_in = [this](const char* file) {
+    return record::SessionReader(sessions_ / file).info().seed;
+  };
+  EXPECT_EQ(seed_in("P03-session-1.h5"), 5u);
+  const auto next = haptrial(run);
+  ASSERT_EQ(next.status, 0) << next.errors;
+  EXPECT_EQ(seed_in("P02-session-1.h5"), 5u);
+  const auto pilot = haptrial(run + " --subject T01 --session 1 --pilot --seed 1");
+  EXPECT_EQ(pilot.status, 0) << pilot.errors;
+  EXPECT_EQ(roster().seed, 5u);
 }
 
 TEST_F(RosterTest, TheCommandsThatItShowsAreGood) {

@@ -245,7 +245,9 @@ int roster(const RosterOptions& options) {
     request.seed = checked_seed(*options.seed);
   }
   if (!options.exclude.empty()) {
-    exclude(make_roster(request), options.folder, options.exclude, options.because);
+    RosterRequest all = request;
+    all.any_seed = true;
+    exclude(make_roster(all), options.folder, options.exclude, options.because);
   }
   const Roster roster = make_roster(request);
   const auto standing = study_standing(experiment, options.folder, checked_jobs(options.jobs));

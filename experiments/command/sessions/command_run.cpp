@@ -210,6 +210,7 @@ RunEnd run_command(const RunOptions& asked) {
         experiment.study->protocol().of_case(*experiment.definition, options.case_name);
   }
   const protocols::Definition& setup = *experiment.definition;
+  options.seed = session_seed(options, session_file(options, setup));
   check_recording(options, experiment.study->protocol(), setup);
   check_pages(options, setup);
   for (const std::string& sentence : protocols::button_warnings(setup, options.devices)) {
@@ -381,7 +382,8 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
                   "Confirmation of consent, such as yes or a date");
   sub->add_option("--notes", o.person.notes, "Free text for the session file");
   sub->add_option("--seed", o.seed,
-                  with_default("Seed of the study, the same for all participants", o.seed));
+                  "Seed of the study, the same for all participants (default: that of the sessions "
+                  "in the folder; 1 if there are none)");
   sub->add_option("--participant", o.participant,
                   "Participant's number, for the order of conditions (default: the one that ends "
                   "the identifier)");

@@ -25,7 +25,9 @@ Roster roster_of(const RunOptions& options, const Experiment& experiment) {
   request.definition = experiment.definition.get();
   request.definition_file = options.definition;
   request.folder = options.out;
-  request.seed = checked_seed(options.seed);
+  if (!options.seed.empty()) {
+    request.seed = checked_seed(options.seed);
+  }
   request.find_case = find_case_of(experiment, options.definition);
   return make_roster(request);
 }

@@ -203,6 +203,17 @@ void check_session_file(const RunOptions& options, const fs::path& file) {
   }
 }
 
+std::string session_seed(const RunOptions& options, const fs::path& own) {
+  if (!options.seed.empty()) {
+    return options.seed;
+  }
+  if (options.resume && record::SessionWriter::can_resume(own)) {
+    return fmt::to_string(record::SessionReader(record::partial_path(own)).info().seed);
+  }
+  const std::vector<EarlierSession> earlier = earlier_sessions(options, own);
+  return options.pilot || earlier.empty() ? "1" : fmt::to_string(earlier.front().info.seed);
+}
+
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
                         const protocols::Definition& setup, const fs::path& own) {
   std::string changed;
@@ -219,6 +230,12 @@ std::string check_study(const RunOptions& options, const protocols::Protocol& pr
           "{}: was recorded with another definition: {}; record each study into a folder of its "
           "own, chosen with --out",
           file.string(), sentence_of(changes.binding)));
+    }
+    if (!info.pilot && info.seed != checked_seed(options.seed)) {
+      throw InputError(
+          fmt::format("{}: was recorded with seed {}, not with {}; orders are balanced over the "
+                      "sessions of one seed: leave out --seed, or choose another --out",
+                      file.string(), info.seed, options.seed));
     }
     if (changed.empty() && !changes.free.empty()) {
       changed = fmt::format(

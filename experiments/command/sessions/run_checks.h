@@ -21,9 +21,16 @@ void check_run_options(const RunOptions& options);
 /// @throws InputError unless a session can begin in this file, or with --resume go on in it.
 void check_session_file(const RunOptions& options, const std::filesystem::path& file);
 
-/// Compares the definition with those of the sessions that the folder holds already; a pilot may
-/// differ from all of them. @returns a sentence about keys that differ and may; empty if none
-/// @throws InputError if they are of another study; names the keys.
+/// The seed of a session: the option's, else that of the session that is resumed or of the study's
+/// sessions in the folder; else 1.
+/// @param own  file of the session that is to be recorded
+std::string session_seed(const RunOptions& options, const std::filesystem::path& own);
+
+/// Compares definition and seed with those of the sessions that the folder holds already; a
+/// pilot may differ from all of them.
+/// @returns a sentence about keys that differ and may; empty if none
+/// @throws InputError if they are of another study or seed; names the keys.
+/// @param options  with a seed
 /// @param own  file of the session that is to be recorded
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
                         const protocols::Definition& setup, const std::filesystem::path& own);

@@ -19,7 +19,7 @@ struct RunOptions {
   std::string subject;
   std::vector<std::string> devices{"virtual"};  // in the order in which the protocol has them
   std::string library;
-  std::string seed{"1"};
+  std::string seed;  // empty: that of the study's sessions (session_seed())
   std::optional<int> participant;
   std::optional<int> session;
   std::string case_name;  // of a curriculum; empty: the one that comes next

@@ -40,13 +40,14 @@ MachineCheck check_participant(RunOptions& options, const Experiment& experiment
     if (!options.pilot || options.subject.empty()) {
       choose_session(options, experiment);
     }
+    const fs::path file = session_file(options, d);
+    options.seed = session_seed(options, file);
     check_recording(options, experiment.study->protocol(), d);
     check_pages(options, d);
     const std::string& device = options.devices.front();
     if (!options.resume && device != "virtual" && !replayed_file(device)) {
       protocols::mirror_for(options.person.handedness, *experiment.definition);
     }
-    const fs::path file = session_file(options, d);
     check_session_file(options, file);
     const std::string changed =
         options.resume ? "" : check_study(options, experiment.study->protocol(), d, file);

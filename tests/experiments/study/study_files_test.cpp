@@ -76,5 +76,18 @@ TEST(StudyFilesTest, ASessionThatWasRecordedTwiceIsSaid) {
                                      "1: S01.h5, later.h5."));
 }
 
+TEST(StudyFilesTest, SessionsOfDifferentSeedsAreSaid) {
+  const test::TemporaryFolder folder;
+  const auto done =
+      test::run_command("set -e\ncd '" + folder.path().string() +
+                        "'\nhaptrial new study.toml --from stiffness_discrimination\n"
+                        "haptrial dry-run study.toml --subjects 1 --trials 8 --seed 5 --out study\n"
+                        "haptrial dry-run study.toml --subjects 2 --trials 8 --out other\n"
+                        "cp other/S02.h5 study\nhaptrial analyze study");
+  ASSERT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("Recorded with different seeds, over which orders are not "
+                                     "balanced: seed 1: S02.h5; seed 5: S01.h5."));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments::study_files_test
