@@ -19,6 +19,8 @@ namespace haptrial::experiments {
 namespace {
 
 constexpr std::string_view kReplay = "replay:";
+constexpr const char* kBetween = ", ";  // names of several devices
+constexpr const char* kMouse = "mouse";
 constexpr const char* kGamepad = "gamepad";
 
 /// A device with a person at it, or with a recording in a person's place.
@@ -123,7 +125,7 @@ std::unique_ptr<protocols::Rig> open_rig(
     }
     return with(std::move(device));
   };
-  if (choice.name == "mouse") {
+  if (choice.name == kMouse) {
     return std::make_unique<MouseRig>(d);
   }
   if (choice.name == kGamepad) {
@@ -182,6 +184,19 @@ void check_reach(const device::DeviceInfo& info, const protocols::Definition& d)
   check("workspace_radius", d.envelope.workspace_radius, info.workspace_radius, "m");
 }
 
+/// The window's pointer moves the first device alone; any other mouse would stand still.
+/// @throws InputError for a mouse or a game controller
+void check_pointer(const DeviceChoice& choice, const protocols::DeviceArm& arm,
+                   const std::string& file_name) {
+  if (choice.name == kMouse || choice.name == kGamepad) {
+    throw InputError(
+        fmt::format("{}: device {} would be driven by --device {}, which drives the first device "
+                    "alone; give each "
+                    "device a --device of its own",
+                    file_name, arm.name, choice.name));
+  }
+}
+
 /// Opens the devices after the first, each as its choice says or like the one before, and adds the
 /// parts that are driven.
 std::unique_ptr<protocols::Rig> with_others(
@@ -197,8 +212,8 @@ std::unique_ptr<protocols::Rig> with_others(
       check_part(together->others().back().device->info(), arms[i], d.file_name);
       continue;
     }
-    DeviceChoice choice = choices[std::min(opened, choices.size() - 1)];
-    choice.number += opened < choices.size() ? 0 : static_cast<int>(opened - choices.size() + 1);
+    const DeviceChoice choice = choice_of(choices, opened);
+    check_pointer(choice, arms[i], d.file_name);
     together->add(open_rig(choice, d, virtual_rig), arms[i]);
     ++opened;
   }
@@ -238,6 +253,30 @@ void check_library(const std::string& device, const std::string& library) {
 
 std::optional<std::string> replayed_file(const std::string& device) {
   return device.starts_with(kReplay) ? std::optional(device.substr(kReplay.size())) : std::nullopt;
+}
+
+DeviceChoice choice_of(const std::vector<DeviceChoice>& choices, std::size_t device) {
+  DeviceChoice choice = choices[std::min(device, choices.size() - 1)];
+  choice.number += device < choices.size() ? 0 : static_cast<int>(device - choices.size() + 1);
+  return choice;
+}
+
+std::string devices_text(const std::vector<DeviceChoice>& choices, int devices) {
+  std::string text;
+  for (int i = 0; i < devices; ++i) {
+    text += (i > 0 ? kBetween : "") + choice_of(choices, static_cast<std::size_t>(i)).name;
+  }
+  return text;
+}
+
+std::vector<std::string> devices_in(const std::string& text) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(kBetween, begin), text.size());
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + std::string_view(kBetween).size();
+  }
+  return names;
 }
 
 std::unique_ptr<protocols::Rig> make_rig(

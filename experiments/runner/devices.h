@@ -18,12 +18,22 @@ struct DeviceChoice {
   int number{0};                // of several with this name, from 0: added to their index
 };
 
+/// The choice of a device after its place in the definition, from 0: those without one have the
+/// last, with the next number.
+DeviceChoice choice_of(const std::vector<DeviceChoice>& choices, std::size_t device);
+
+/// Event of a session with several devices: their names in their order, "haply, paddle".
+inline constexpr const char* kDevicesEvent = "devices";
+std::string devices_text(const std::vector<DeviceChoice>& choices, int devices);
+std::vector<std::string> devices_in(const std::string& text);
+
 /// Opens the devices of a session, set up as the definition says; replay:FILE plays a recorded
 /// session's hand back.
 /// @param choices      of each device in their order; for those that it leaves out the last one
 /// @param virtual_rig  makes virtual devices with a virtual person
-/// @throws InputError for an unknown name, an absent library or an envelope that the device cannot
-///         fill; RunError where no device answers.
+/// @throws InputError for an unknown name, an absent library, an envelope that the device cannot
+///         fill, or a mouse or gamepad that is not the first device; RunError where no device
+///         answers.
 std::unique_ptr<protocols::Rig> make_rig(
     const std::vector<DeviceChoice>& choices, const protocols::Definition& definition,
     const std::function<std::unique_ptr<protocols::Rig>()>& virtual_rig);

@@ -399,8 +399,12 @@ void Session::run_trials() {
   pacing_.let_read(d_.texts.thanks, "thanks");
 }
 
-/// Events for each run: a resumed session may go on in another language.
+/// Events for each run: a resumed session may go on in another language, and with other devices.
 void Session::note_setting() {
+  const int devices = protocols::tips_of(d_.arms());
+  if (devices > 1 && request_.device.name != "virtual") {
+    record_.event(kDevicesEvent, devices_text(choices_of(request_), devices));
+  }
   if (!d_.language.empty()) {
     record_.event("language", d_.language);
   }

@@ -11,6 +11,7 @@
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/trial_progress.h"
+#include "experiments/runner/devices.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/groups.h"
@@ -29,6 +30,7 @@ struct FoundFile {
   fs::path file;
   record::SessionInfo info;
   RosterSession session;
+  std::vector<std::string> devices;  // in their order
 };
 
 SessionState state_of(const fs::path& file, const record::SessionReader& reader) {
@@ -45,6 +47,17 @@ SessionState state_of(const fs::path& file, const record::SessionReader& reader)
   return aborted ? SessionState::kAborted : SessionState::kDone;
 }
 
+/// The devices of a session's last run, as its file names them.
+std::vector<std::string> devices_of(const record::SessionReader& reader) {
+  std::vector<std::string> devices{reader.info().device};
+  for (const record::EventRow& event : reader.events()) {
+    if (event.kind == kDevicesEvent) {
+      devices = devices_in(event.text);
+    }
+  }
+  return devices;
+}
+
 /// The session files of a folder, finished or not; what cannot be read gets a sentence.
 std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>& remarks) {
   std::vector<fs::path> files;
@@ -59,10 +72,9 @@ std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>
   for (const fs::path& file : files) {
     try {
       const record::SessionReader reader(file);
-      FoundFile one{file, reader.info(), {}};
+      FoundFile one{file, reader.info(), {}, devices_of(reader)};
       one.session = {static_cast<int>(one.info.session), state_of(file, reader),
-                     record::trial_progress(reader).done, file.filename().string(),
-                     one.info.device};
+                     record::trial_progress(reader).done, file.filename().string()};
       found.push_back(std::move(one));
     } catch (const InputError& error) {
       remarks.push_back(fmt::format("Not counted, because it cannot be read: {}", error.what()));
@@ -138,7 +150,7 @@ class RosterMaker {
       }
       at->sessions.push_back(found.session);
       if (!info.pilot && !excluded) {
-        newest_ = found.info.start_utc > newest_.start_utc ? found.info : newest_;
+        newest_ = found.info.start_utc > newest_.info.start_utc ? found : newest_;
       }
     }
   }
@@ -324,8 +336,10 @@ class RosterMaker {
     const bool led = !d_.tutoring.led.groups.empty() &&
                      d_.is_led(next.session, {1, next.number - 1, next.group});
     next.command += led ? " --tutor FILE:TRIAL" : "";
-    const std::string& device = newest_.device;
-    next.command += device.empty() || device == kVirtual ? "" : fmt::format(" --device {}", device);
+    for (const std::string& device : newest_.devices) {
+      const bool left_out = device.empty() || newest_.devices.front() == kVirtual;
+      next.command += left_out ? "" : fmt::format(" --device {}", typed(device));
+    }
     next.command += roster_.seed != 1 ? fmt::format(" --seed {}", roster_.seed) : "";
     next.command += fmt::format(" --out {}", typed(request_.folder.string()));
     roster_.next.push_back(std::move(next));
@@ -334,8 +348,8 @@ class RosterMaker {
   const RosterRequest& request_;
   const protocols::Definition& d_;
   std::optional<std::uint64_t> seed_;
-  record::SessionInfo newest_;  // of the study
-  std::set<int> taken_;         // numbers
+  FoundFile newest_;     // of the study
+  std::set<int> taken_;  // numbers
   Roster roster_;
 };
 

@@ -26,7 +26,6 @@ struct RosterSession {
   SessionState state{SessionState::kDone};
   int trials{0};  // of the study that were done, without practice
   std::string file;
-  std::string device;
 };
 
 /// Somebody who has a session file.

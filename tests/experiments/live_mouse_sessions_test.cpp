@@ -46,8 +46,10 @@ std::vector<std::string> shipped_names() {
 class MouseSessionTest : public testing::TestWithParam<std::string> {
  protected:
   std::string run(const std::string& more) const {
-    return "run '" + definition_of(GetParam()).string() + "' --device mouse --window --out '" +
-           folder_.path().string() + "' --subject S01 " + more;
+    const auto d = load_experiment(definition_of(GetParam())).definition;
+    const char* second = protocols::tips_of(d->arms()) > 1 ? " --device virtual" : "";
+    return "run '" + definition_of(GetParam()).string() + "' --device mouse" + second +
+           " --window --out '" + folder_.path().string() + "' --subject S01 " + more;
   }
   fs::path partial() const { return folder_ / "S01.h5.partial"; }
   bool has_begun() const {

@@ -1,23 +1,31 @@
 // Two devices in one session: what each is given, what is recorded of each, and that a fault of one
 // takes the force from both in the same tick.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <memory>
 
 #include "core/base/definition/table.h"
+#include "core/base/error.h"
 #include "core/device/fault.h"
+#include "core/device/registered_devices.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/device_row.h"
+#include "experiments/runner/devices.h"
 #include "experiments/runner/session.h"
+#include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "experiments/study/roster.h"
 #include "protocols/interface/protocol.h"
 #include "tests/experiments/shipped.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::two_devices_test {
@@ -41,6 +49,8 @@ class CirclingDevice final : public device::Device {
   CirclingDevice(double radius, const Trouble& trouble) : radius_(radius), trouble_(trouble) {
     info_.simulated = true;
     info_.name = "circling";
+    info_.max_force = 20.0;
+    info_.workspace_radius = 0.1;
   }
   const device::DeviceInfo& info() const noexcept override { return info_; }
   bool read(device::DeviceReading& reading) noexcept override {
@@ -319,6 +329,74 @@ TEST_F(TwoDevicesTest, ARefusedForceIsTakenBackFromTheOther) {
   EXPECT_TRUE(first.given.back().isZero(0.0));
   EXPECT_TRUE(second.given.back().isZero(0.0));
   EXPECT_GT(first.given[first.given.size() - 2].norm(), 0.1);
+}
+
+/// A study of two devices, of which the first is held.
+class TwoDevicesStudyTest : public testing::Test {
+ protected:
+  TwoDevicesStudyTest() {
+    test::write_text(folder_ / "two.toml",
+                     "[experiment]\nprotocol = \"trials\"\nname = \"two\"\n"
+                     "[design]\nparticipants = 4\n[devices.finger]\n[devices.thumb]\n"
+                     "[[blocks]]\nname = \"one\"\ntrials = 1\n"
+                     "[[stages]]\nname = \"wait\"\nuntil = { time = 0.05 }\n");
+    experiment_ = load_experiment(folder_ / "two.toml");
+  }
+  static void SetUpTestSuite() {
+    device::register_device(
+        {"circling", "goes round by itself",
+         [](const std::string&, int, double) -> std::unique_ptr<device::Device> {
+           return std::make_unique<CirclingDevice>(0.01, Trouble{});
+         }});
+  }
+  void record(const std::string& subject, std::vector<DeviceChoice> more) const {
+    SessionRequest request;
+    request.protocol = &experiment_.study->protocol();
+    request.definition = experiment_.definition.get();
+    request.subject = subject;
+    request.participant = subject.back() - '1';
+    request.seed = 1;
+    request.device = {"circling", "", 0};
+    request.more_devices = std::move(more);
+    request.file = folder_ / "out" / (subject + ".h5");
+    std::filesystem::create_directory(folder_ / "out");
+    run_session(request);
+  }
+  std::string next_command() const {
+    return make_roster({&experiment_.study->protocol(),
+                        experiment_.definition.get(),
+                        "two.toml",
+                        folder_ / "out",
+                        {}})
+        .next.front()
+        .command;
+  }
+
+  test::TemporaryFolder folder_;
+  Experiment experiment_;
+};
+
+TEST_F(TwoDevicesStudyTest, TheNextSessionHasTheDevicesOfTheOneBefore) {
+  record("P01", {{"virtual", "", 0}});
+  EXPECT_THAT(next_command(), testing::HasSubstr(" --device circling --device virtual --out "));
+}
+
+TEST_F(TwoDevicesStudyTest, ADeviceWithoutAChoiceIsLikeTheOneBefore) {
+  record("P01", {});
+  EXPECT_THAT(next_command(), testing::HasSubstr(" --device circling --device circling --out "));
+}
+
+TEST_F(TwoDevicesStudyTest, ThePointerMovesTheFirstDeviceAlone) {
+  for (const std::vector<DeviceChoice>& choices :
+       {std::vector<DeviceChoice>{{"mouse", "", 0}},
+        std::vector<DeviceChoice>{{"circling", "", 0}, {"mouse", "", 0}},
+        std::vector<DeviceChoice>{{"mouse", "", 0}, {"gamepad", "", 0}}}) {
+    EXPECT_THAT(
+        test::message_of<InputError>([&] { make_rig(choices, *experiment_.definition, nullptr); }),
+        testing::HasSubstr(fmt::format(
+            "two.toml: device thumb would be driven by --device {}, which drives the first",
+            choices.back().name)));
+  }
 }
 
 }  // namespace
