@@ -55,6 +55,23 @@ bool defines_experiment(const fs::path& file) {
   }
 }
 
+/// Stems of definitions that begin with another one's: "pulls-002" beside "pulls".
+std::vector<std::string> longer_stems(const std::vector<std::string>& definitions,
+                                      const std::string& stem) {
+  std::vector<std::string> longer;
+  for (const std::string& definition : definitions) {
+    if (const std::string other = stem_of(definition); other != stem && other.starts_with(stem)) {
+      longer.push_back(other);
+    }
+  }
+  return longer;
+}
+
+/// Whether a folder's name is a stem, or goes on behind it with '-'.
+bool continues(const std::string& name, const std::string& stem) {
+  return name == stem || name.starts_with(stem + "-");
+}
+
 bool lies_in(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
          folder.end();
@@ -118,11 +135,11 @@ std::string StudyFolder::sessions_of(const std::string& definition) {
 }
 
 std::vector<std::string> StudyFolder::session_folders(const std::string& definition) const {
-  return folders_like(definition, "(-rehearsal)?(-[0-9]+)?");
+  return folders_like(definition, "((-rehearsal)?-[0-9]{3,})?");
 }
 
 std::vector<std::string> StudyFolder::export_folders(const std::string& definition) const {
-  return folders_like(definition, "(-rehearsal)?(-[0-9]+)?-(csv|bids)-[0-9]+");
+  return folders_like(definition, "((-rehearsal)?-[0-9]{3,})?-(csv|bids)-[0-9]{3,}");
 }
 
 std::vector<std::string> StudyFolder::folders_like(const std::string& definition,
@@ -130,11 +147,13 @@ std::vector<std::string> StudyFolder::folders_like(const std::string& definition
   std::vector<std::string> names;
   const std::regex more(pattern);
   const std::string stem = stem_of(definition);
+  const std::vector<std::string> longer = longer_stems(definitions(), stem);
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(root_ / "out", error)) {
     const std::string name = entry.path().filename().string();
     std::error_code ignored;
     if (name.starts_with(stem) && std::regex_match(name.substr(stem.size()), more) &&
+        std::ranges::none_of(longer, [&](const auto& other) { return continues(name, other); }) &&
         entry.is_directory(ignored) && holds("out/" + name)) {
       names.push_back("out/" + name);
     }

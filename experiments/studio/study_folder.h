@@ -36,7 +36,8 @@ class StudyFolder {
   std::vector<std::string> definitions() const;
 
   /// Names of the folders of a definition's sessions and rehearsals, in order: out/STEM,
-  /// out/STEM-rehearsal-001 and the like.
+  /// out/STEM-001 and out/STEM-rehearsal-001, as commands and the studio name them. A folder whose
+  /// name begins with the longer stem of another definition is that one's.
   std::vector<std::string> session_folders(const std::string& definition) const;
   /// Names of the folders that such folders were exported to, in order: out/STEM-csv-001,
   /// out/STEM-rehearsal-001-bids-001 and the like.

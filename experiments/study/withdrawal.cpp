@@ -8,6 +8,10 @@
 #include <cctype>
 #include <chrono>
 #include <iterator>
+#include <map>
+#include <optional>
+#include <ranges>
+#include <regex>
 #include <set>
 #include <sstream>
 
@@ -18,6 +22,7 @@
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/plan/plan_log.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -44,43 +49,152 @@ bool is_made(const fs::path& file) {
   return kKinds.contains(file.extension().string());
 }
 
-bool is_of(const fs::path& file, const std::string& subject) {
+/// Nothing for a file that cannot be read.
+std::optional<record::SessionInfo> info_of(const fs::path& file) {
   try {
-    return record::SessionReader(file).info().subject == subject;
+    return record::SessionReader(file).info();
   } catch (const std::exception&) {
-    return has_word(file.filename().string(), subject);  // unreadable: its name tells
+    return std::nullopt;
   }
 }
 
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
+         folder.end();
+}
+
+/// Each file once, also if folders lie within each other.
 std::vector<fs::path> files_below(const std::vector<fs::path>& folders) {
-  std::set<fs::path> files;
+  std::map<fs::path, fs::path> files;  // by canonical path
   for (const fs::path& folder : folders) {
     if (!fs::is_directory(folder)) {
       throw InputError(fmt::format("{}: not a folder", folder.string()));
     }
     for (const auto& each : fs::recursive_directory_iterator(folder)) {
       if (each.is_regular_file() && !each.is_symlink()) {
-        files.insert(each.path());
+        files.emplace(fs::canonical(each.path()), each.path());
       }
     }
   }
-  return {files.begin(), files.end()};
+  const auto names = std::views::values(files);
+  return {names.begin(), names.end()};
 }
 
-std::vector<fs::path> sessions_among(const std::vector<fs::path>& files,
-                                     const std::string& subject) {
-  std::vector<fs::path> own;
+/// The sessions of the study's own folder, by which those of other folders are judged: the same
+/// identifier may be somebody else's in another study.
+class OwnStudy {
+ public:
+  OwnStudy(const fs::path& folder, const ProtocolOf& protocol_of) : protocol_of_(protocol_of) {
+    for (const fs::path& file : files_below({folder})) {
+      if (const auto info = is_session_file(file) ? info_of(file) : std::nullopt) {
+        by_definition_.emplace(info->definition, *info);
+      }
+    }
+  }
+  /// Without a session to compare with, every one is taken for the study's.
+  bool has(const record::SessionInfo& session) const {
+    return by_definition_.empty() || by_definition_.contains(session.definition) ||
+           std::ranges::any_of(by_definition_,
+                               [&](const auto& own) { return is_same(own.second, session); });
+  }
+
+ private:
+  bool is_same(const record::SessionInfo& own, const record::SessionInfo& session) const {
+    try {
+      return protocols::study_changes(protocol_of_(own), own, session).same_study();
+    } catch (const InputError&) {
+      return false;  // a protocol that this program does not have
+    }
+  }
+
+  const ProtocolOf& protocol_of_;
+  std::map<std::string, record::SessionInfo> by_definition_;  // one session of each
+};
+
+/// Finds the participant's sessions; those of another study are among the others.
+void find_sessions(const std::vector<fs::path>& files, const std::string& subject,
+                   const OwnStudy& study, Withdrawal& found) {
   for (const fs::path& file : files) {
-    if (!is_session_file(file) || !is_of(file, subject)) {
+    if (!is_session_file(file)) {
+      continue;
+    }
+    const auto info = info_of(file);
+    if (info ? info->subject != subject : !has_word(file.filename().string(), subject)) {
+      continue;  // the name tells of a file that cannot be read
+    }
+    if (info && !study.has(*info)) {
+      found.others.push_back(file);
       continue;
     }
     if (file.extension() == ".partial" && record::FileLock::taken(file)) {
       throw InputError(fmt::format("{}: a session of {} is being recorded; end it first",
                                    file.string(), subject));
     }
-    own.push_back(file);
+    found.sessions.push_back(file);
   }
-  return own;
+}
+
+/// Tables and recordings of an export that say when sessions began.
+bool states_starts(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name == "sessions.csv" || name.ends_with("_scans.tsv") ||
+         name.ends_with("_sessions.tsv") || name.ends_with(".xdf");
+}
+
+/// When the participant's sessions began, as a file of an export says: "2026-11-20T09:30:00Z".
+std::set<std::string> stated_starts(const fs::path& file, const std::string& subject) {
+  constexpr std::size_t kLooked = 1'000'000;  // [bytes]
+  static const std::regex kTime(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)");
+  const bool all = has_word(file.string(), subject);
+  std::set<std::string> starts;
+  std::istringstream lines(file_head(file, kLooked));
+  for (std::string line; std::getline(lines, line);) {
+    if (all || has_word(line, subject)) {
+      starts.insert(std::sregex_token_iterator(line.begin(), line.end(), kTime),
+                    std::sregex_token_iterator());
+    }
+  }
+  return starts;
+}
+
+/// The folder of an export that a file with starts belongs to: BIDS keeps a folder for each
+/// participant and session.
+fs::path export_folder(const fs::path& file) {
+  fs::path folder = file.parent_path();
+  const auto begins = [&](const char* with) {
+    return folder.filename().string().starts_with(with);
+  };
+  while (begins("sub-") || begins("ses-")) {
+    folder = folder.parent_path();
+  }
+  return folder;
+}
+
+/// Folders outside the study's own that were exported from another one: they say when sessions of
+/// the participant began, but none of those that are withdrawn.
+std::vector<fs::path> foreign_exports(const std::vector<fs::path>& files, const fs::path& study,
+                                      const std::string& subject,
+                                      const std::vector<fs::path>& sessions) {
+  std::set<std::string> own;
+  for (const fs::path& session : sessions) {
+    if (const auto info = info_of(session)) {
+      own.insert(info->start_utc);
+    }
+  }
+  std::map<fs::path, std::set<std::string>> stated;
+  for (const fs::path& file : files) {
+    if (states_starts(file) && !is_below(file, study)) {
+      stated[export_folder(file)].merge(stated_starts(file, subject));
+    }
+  }
+  std::vector<fs::path> foreign;
+  for (const auto& [folder, starts] : stated) {
+    const auto is_own = [&](const std::string& start) { return own.contains(start); };
+    if (!own.empty() && !starts.empty() && std::ranges::none_of(starts, is_own)) {
+      foreign.push_back(folder);
+    }
+  }
+  return foreign;
 }
 
 /// Whether bytes of a file are words: in compressed ones an identifier occurs by chance.
@@ -166,18 +280,22 @@ bool lies_in(const std::set<fs::path>& folders, const fs::path& file,
 
 /// Sorts the files that are no sessions. A file without the participant's name counts if it lies
 /// beside or below one that has it, and is younger than the first session: stimuli and notes stay.
+/// @param foreign  folders in which nothing was made from the participant's sessions
 void sort_others(const std::vector<fs::path>& files, const std::string& subject,
-                 Withdrawal& found) {
+                 const std::vector<fs::path>& foreign, Withdrawal& found) {
+  const auto is_foreign = [&](const fs::path& file) {
+    return std::ranges::any_of(foreign, [&](const auto& each) { return is_below(file, each); });
+  };
   std::vector<fs::path> unnamed;
   for (const fs::path& file : files) {
     if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList ||
         is_plan(file)) {
       continue;
     }
-    if (!names(file, subject)) {
+    if (names(file, subject)) {
+      (is_made(file) && !is_foreign(file) ? found.made : found.others).push_back(file);
+    } else if (!is_foreign(file)) {
       unnamed.push_back(file);
-    } else {
-      (is_made(file) ? found.made : found.others).push_back(file);
     }
   }
   fs::file_time_type first = fs::file_time_type::max();
@@ -194,10 +312,18 @@ void sort_others(const std::vector<fs::path>& files, const std::string& subject,
   std::ranges::sort(found.made);
 }
 
+/// Finds the reasons of exclusions in the study's folder, and beside sessions that are withdrawn.
+void find_reasons(const std::vector<fs::path>& files, const fs::path& study, Withdrawal& found) {
+  std::ranges::copy_if(files, std::back_inserter(found.reasons), [&](const fs::path& file) {
+    const fs::path folder = file.parent_path().parent_path();
+    return file.filename() == "reasons.csv" && file.parent_path().filename() == "excluded" &&
+           (is_below(file, study) || std::ranges::any_of(found.sessions, [&](const auto& session) {
+              return is_below(session, folder);
+            }));
+  });
+}
+
 void remove_reason(const fs::path& file, const std::string& subject) {
-  if (!fs::exists(file)) {
-    return;
-  }
   std::istringstream lines(file_text(file));
   std::string kept;
   bool rows = false;
@@ -247,15 +373,18 @@ bool has_word(std::string_view text, std::string_view word) {
   return false;
 }
 
-Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::string& subject) {
+Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::string& subject,
+                           const ProtocolOf& protocol_of) {
   const std::vector<fs::path> files = files_below(folders);
   Withdrawal found;
-  found.sessions = sessions_among(files, subject);
+  find_sessions(files, subject, OwnStudy(folders.front(), protocol_of), found);
   if (found.sessions.empty()) {
     throw InputError(
         fmt::format("{} has no session file in {}", subject, folders.front().string()));
   }
-  sort_others(files, subject, found);
+  sort_others(files, subject, foreign_exports(files, folders.front(), subject, found.sessions),
+              found);
+  find_reasons(files, folders.front(), found);
   return found;
 }
 
@@ -273,8 +402,8 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
       }
     }
   }
-  for (const fs::path& folder : folders) {
-    remove_reason(folder / "excluded" / "reasons.csv", subject);
+  for (const fs::path& file : found.reasons) {
+    remove_reason(file, subject);
   }
   for (std::size_t i = 0; i < folders.size(); ++i) {
     note_files(folders[i], kWithdrawn, digests[i]);

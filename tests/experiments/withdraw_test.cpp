@@ -115,6 +115,15 @@ TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
   EXPECT_THAT(files_with("S02"), IsEmpty());
 }
 
+TEST_F(WithdrawTest, ReasonsOfAStudyBelowTheFolderGo) {
+  fs::create_directories(folder_ / "out/mine/excluded");
+  fs::rename(folder_ / "out/mine/S02.h5", folder_ / "out/mine/excluded/S02.h5");
+  write_text(folder_ / "out/mine/excluded/reasons.csv", "participant,reason\nS02,left early\n");
+  EXPECT_EQ(run("withdraw out S02 --also backup --also ./out/mine --yes").status, 0)
+      << "a folder that is given twice is looked through once";
+  EXPECT_THAT(files_with("S02"), IsEmpty());
+}
+
 /// Exports and sheets name nobody in some folders, and sessions hold words in compressed tables.
 TEST_F(WithdrawTest, FoldersWithoutNamesGoAndSessionsThatTheParticipantLedAreNamed) {
   run("new force.toml --from force_training");
@@ -135,6 +144,41 @@ TEST_F(WithdrawTest, FoldersWithoutNamesGoAndSessionsThatTheParticipantLedAreNam
   EXPECT_TRUE(fs::exists(folder_ / "force/led/S01.h5"));
   EXPECT_THAT(done.output,
               HasSubstr("leaves, although it names the participant: force/led/S01.h5"));
+}
+
+/// S02 of another study is another person.
+TEST_F(WithdrawTest, SessionsAndExportsOfAnotherStudyStay) {
+  run("new other.toml && haptrial dry-run other.toml --subjects 2 --out backup/other");
+  run("export backup/other --csv backup/tables && haptrial export backup/other --bids backup/bids");
+  run("export out/mine --csv backup/mine_tables && haptrial export out/mine --bids "
+      "backup/mine_bids");
+  for (const char* table : {"tables/sessions.csv", "bids/sub-S02/sub-S02_scans.tsv"}) {
+    std::string text = file_text(folder_ / "backup" / table);  // both began in one second
+    for (auto at = text.find("T"); at != text.npos; at = text.find("T", at + 1)) {
+      if (at > 10 && text[at - 3] == '-') {
+        text.replace(at - 10, 4, "1999");
+      }
+    }
+    write_text(folder_ / "backup" / table, text);
+  }
+  fs::create_directories(folder_ / "backup/other/excluded");
+  write_text(folder_ / "backup/other/excluded/reasons.csv", "participant,reason\nS02,slept\n");
+  const auto done = run("withdraw out/mine S02 --also backup --yes");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("deleted: 2 session files of S02, and "));
+  for (const char* name : {"other/S02.h5", "other/excluded/reasons.csv", "tables/sessions.csv",
+                           "tables/trials.csv", "tables/dictionary.json", "bids/participants.tsv",
+                           "bids/task-other_events.json", "bids/sub-S02/sub-S02_scans.tsv"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "backup" / name)) << name;
+  }
+  for (const char* name : {"other/S02.h5", "tables/trials.csv", "bids/participants.tsv"}) {
+    EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: backup/" +
+                                       std::string(name)));
+  }
+  for (const char* name :
+       {"mine/S02.h5", "mine_tables", "mine_bids/participants.tsv", "mine_bids/sub-S02"}) {
+    EXPECT_FALSE(fs::exists(folder_ / "backup" / name)) << name;
+  }
 }
 
 TEST_F(WithdrawTest, BytesOfCompressedFilesAreNoWords) {

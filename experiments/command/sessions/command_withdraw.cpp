@@ -10,6 +10,7 @@
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/studies/registry.h"
 #include "experiments/study/withdrawal.h"
 
 namespace haptrial::experiments {
@@ -48,7 +49,7 @@ void confirm(const std::string& subject) {
 int withdraw_participant(const WithdrawOptions& o) {
   std::vector<fs::path> folders{o.folder};
   folders.insert(folders.end(), o.also.begin(), o.also.end());
-  const Withdrawal found = find_withdrawal(folders, o.subject);
+  const Withdrawal found = find_withdrawal(folders, o.subject, protocol_of);
   const char* verb = o.dry ? "would delete" : "deletes";
   print_files(verb, found.sessions);
   print_files(verb, found.made);

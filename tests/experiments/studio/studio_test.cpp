@@ -244,6 +244,34 @@ TEST_F(StudioTest, AWithdrawalIsListedBeforeItIsDone) {
   expect_refused(posting("/withdraw", sure), 400, "does not begin with -");
 }
 
+TEST_F(StudioTest, FoldersOfADefinitionWhoseNameContinuesAreThatOnes) {
+  for (const char* name :
+       {"mine", "mine-001", "mine-rehearsal-002", "mine-csv-001", "mine-001-bids-001",
+        "mine-rehearsal-002-csv-001", "mine-2", "mine-2-csv-001", "mine-rehearsal", "mine-003",
+        "mine-003-rehearsal-001", "mine-003-bids-001", "mines", "mine-power-001"}) {
+    fs::create_directories(folder_ / "out" / name);
+  }
+  fs::copy(folder_ / "mine.toml", folder_ / "mine-2.toml");
+  fs::copy(folder_ / "mine.toml", folder_ / "mine-003.toml");
+  const auto names = [&](const std::string& file, const char* kind) {
+    std::vector<std::string> all;
+    for (const json& each : get("/sessions", "file=" + file)[kind]) {
+      all.push_back(each["folder"]);
+    }
+    return all;
+  };
+  EXPECT_THAT(names("mine.toml", "folders"),
+              ElementsAre("out/mine", "out/mine-001", "out/mine-rehearsal-002"));
+  EXPECT_THAT(
+      names("mine.toml", "exports"),
+      ElementsAre("out/mine-001-bids-001", "out/mine-csv-001", "out/mine-rehearsal-002-csv-001"));
+  EXPECT_THAT(names("mine-2.toml", "folders"), ElementsAre("out/mine-2"));
+  EXPECT_THAT(names("mine-2.toml", "exports"), ElementsAre("out/mine-2-csv-001"));
+  EXPECT_THAT(names("mine-003.toml", "folders"),
+              ElementsAre("out/mine-003", "out/mine-003-rehearsal-001"));
+  EXPECT_THAT(names("mine-003.toml", "exports"), ElementsAre("out/mine-003-bids-001"));
+}
+
 TEST_F(StudioTest, APreviewIsOfTheTextAsItIsWritten) {
   std::string other = text();
   const std::string name = "name = \"";
