@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <chrono>
 #include <iterator>
@@ -31,10 +30,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kList = "withdrawals.csv";
 
+/// Whether a file is a session's, or what recording, copying and repairing keep beside it.
 bool is_session_file(const fs::path& file) {
-  constexpr std::array kEndings{".h5", ".h5.partial", ".h5.copying"};
-  const std::string name = file.filename().string();
-  return std::ranges::any_of(kEndings, [&](const char* ending) { return name.ends_with(ending); });
+  static const std::regex kName(R"(.*\.h5(\.(partial|new|copying|repaired|damaged(-[0-9]+)?))*)");
+  return std::regex_match(file.filename().string(), kName);
 }
 
 /// A plan and its log, which name nobody and are never changed.

@@ -87,12 +87,20 @@ TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
              "participant,reason\nS02,left early\nS020,slept\n");
   write_text(folder_ / "out/mine/S02-session-2.h5.partial", "torn");
   write_text(folder_ / "out/mine/S020.h5.partial", "torn");
+  const std::vector<std::string> kept{"S02.h5.partial.damaged", "S02.h5.partial.damaged-2",
+                                      "S02.h5.partial.repaired", "S02.h5.partial.new"};
+  for (const std::string& name : kept) {
+    write_text(folder_ / "out/mine" / name, "what a repair or a kill left");
+  }
   write_text(folder_ / "out/mine/remarks.txt", "S02 called on Monday\n");
   const auto done = run("withdraw out/mine S02 --yes");
   EXPECT_EQ(done.status, 0) << done.errors;
   EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: "
                                      "out/mine/remarks.txt"));
   EXPECT_FALSE(fs::exists(folder_ / "out/mine/S02-session-2.h5.partial"));
+  for (const std::string& name : kept) {
+    EXPECT_FALSE(fs::exists(folder_ / "out/mine" / name)) << name;
+  }
   EXPECT_TRUE(fs::exists(folder_ / "out/mine/S020.h5.partial"));
   EXPECT_EQ(file_text(folder_ / "out/mine/excluded/reasons.csv"),
             "participant,reason\nS020,slept\n");
