@@ -36,11 +36,11 @@ json StudioViews::preview(const std::string& file, const std::string& text, int 
   json out{{"command", shown_command(words)}};
   if (answer.is_object() && answer.contains("page")) {
     const fs::path page = preview_file(number);
-    write_text(page, replaced(file_text(page), draft.name(), file));
+    write_text(page, draft.renamed(file_text(page)));
     out["page"] = number;
   } else {
     const std::string failure = answer.is_object() ? answer.value("failure", "") : "";
-    out["failure"] = replaced(failure, draft.name(), file);
+    out["failure"] = draft.renamed(failure);
   }
   return out;
 }
@@ -95,7 +95,7 @@ json StudioViews::try_trial(const std::string& file, const std::string& text, in
     out["try"] = begun.number;
     out["head"] = json::parse(begun.first, nullptr, false);
   } else {
-    out["failure"] = replaced(begun.first, draft.name(), file);
+    out["failure"] = draft.renamed(begun.first);
   }
   return out;
 }

@@ -6,7 +6,9 @@
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <list>
 #include <string>
+#include <system_error>
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
@@ -38,27 +40,54 @@ inline int next_number() {
   return ++number;
 }
 
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
 /// A definition as it is being written. It lies beside the saved one, since it may name files that
-/// do.
+/// do, with copies of that one's texts in other languages.
 class Draft {
  public:
   /// @param folder  of the studio, in which commands run
   Draft(const std::filesystem::path& definition, const std::filesystem::path& folder,
         const std::string& text)
-      : file_(definition.parent_path() / fmt::format(".{}.draft-{}-{}.toml",
-                                                     definition.stem().string(), ::getpid(),
-                                                     next_number())),
+      : stem_(definition.stem().string()),
+        draft_stem_(fmt::format(".{}.draft-{}-{}", stem_, ::getpid(), next_number())),
+        file_(definition.parent_path() / (draft_stem_ + ".toml")),
         name_(file_.path().lexically_relative(folder).string()) {
     if (text.size() > kMostDefinition) {
       throw InputError(
           fmt::format("the definition has {} bytes; allowed: {}", text.size(), kMostDefinition));
     }
     write_text(file_.path(), text);
+    copy_translations(definition.parent_path());
   }
   const std::string& name() const { return name_; }
+  /// A command's output about the draft, as it would have been about the definition.
+  std::string renamed(const std::string& output) const {
+    return replaced(output, draft_stem_, stem_);
+  }
 
  private:
+  void copy_translations(const std::filesystem::path& folder) {
+    const std::string begin = stem_ + ".texts.";
+    std::error_code ignored;  // a file that goes meanwhile
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(begin) && name.ends_with(".toml")) {
+        translations_.emplace_back(folder / (draft_stem_ + name.substr(stem_.size())));
+        std::filesystem::copy_file(entry.path(), translations_.back().path(), ignored);
+      }
+    }
+  }
+
+  std::string stem_;
+  std::string draft_stem_;
   ShortLivedFile file_;
+  std::list<ShortLivedFile> translations_;
   std::string name_;
 };
 
@@ -83,13 +112,6 @@ inline WebAnswer framed(const std::string& type, std::string text) {
       {"X-Frame-Options", "SAMEORIGIN"},
       {"Cross-Origin-Opener-Policy", "unsafe-none"}};
   return answer;
-}
-
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-  return text;
 }
 
 }  // namespace haptrial::experiments

@@ -223,7 +223,7 @@ json StudioViews::validate(const std::string& file, const std::string& text) con
     return words;
   };
   const CommandResult result = commands_.run(line_for(draft.name()));
-  const std::string output = replaced(result.output, draft.name(), file);
+  const std::string output = draft.renamed(result.output);
   return {{"command", shown_command(line_for(file))},
           {"valid", result.status == 0},
           {"since", lines_that_begin(output, "since ")},
@@ -235,7 +235,7 @@ json StudioViews::keys(const std::string& file, const std::string& text) const {
   const Draft draft(folder_.definition(file), folder_.path(), text);
   const CommandResult result = commands_.run({"set", draft.name(), "--list", "--json"});
   if (result.status != 0) {
-    throw InputError(replaced(result.output, draft.name(), file));
+    throw InputError(draft.renamed(result.output));
   }
   return {{"command", shown_command({"set", file, "--list"})},
           {"keys", json::parse(result.output, nullptr, false)}};
@@ -263,7 +263,7 @@ json StudioViews::set_key(const std::string& file, const std::string& text, cons
   };
   const CommandResult result = commands_.run(line_for(draft.name(), true));
   if (result.status != 0) {
-    throw InputError(replaced(result.output, draft.name(), file));
+    throw InputError(draft.renamed(result.output));
   }
   return {{"command", shown_command(line_for(file, false))}, {"text", result.output}};
 }

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
@@ -42,8 +45,9 @@ struct ValidateOptions {
   std::string since;  // session file
 };
 
-/// Prints the keys in which a session's definition differs, a line each.
-void print_changes(const Experiment& experiment, const std::string& session) {
+/// Lines that name the keys in which a session's definition differs.
+/// @throws InputError for a file that is no session of the definition's protocol
+std::vector<std::string> changes_since(const Experiment& experiment, const std::string& session) {
   const record::SessionInfo info = record::SessionReader(session).info();
   const protocols::Protocol& protocol = experiment.study->protocol();
   if (&protocol_of(info) != &protocol) {
@@ -52,37 +56,62 @@ void print_changes(const Experiment& experiment, const std::string& session) {
   }
   const DefinitionChanges changes =
       protocols::study_changes(protocol, info, experiment.definition->text, info.device);
-  const auto print = [&session](const char* meaning, const std::vector<DefinitionChange>& of) {
+  std::vector<std::string> lines;
+  const auto add = [&](const char* meaning, const std::vector<DefinitionChange>& of) {
     for (const DefinitionChange& each : of) {
-      fmt::print("since {}, {}: {}\n", session, meaning, sentence_of({each}));
+      lines.push_back(fmt::format("since {}, {}: {}", session, meaning, sentence_of({each})));
     }
   };
-  print("another study", changes.binding);
-  print("may change within a study", changes.free);
-  if (changes.binding.empty() && changes.free.empty()) {
-    fmt::print("since {}: {}\n", session,
-               changes.same_text ? "nothing has changed" : "only comments and layout have changed");
+  add("another study", changes.binding);
+  add("may change within a study", changes.free);
+  if (lines.empty()) {
+    lines.push_back(fmt::format(
+        "since {}: {}", session,
+        changes.same_text ? "nothing has changed" : "only comments and layout have changed"));
   }
+  return lines;
+}
+
+/// The definition in each of its languages. @throws InputError for texts with a mistake
+std::map<std::string, Experiment> translations_of(const std::string& file) {
+  std::map<std::string, Experiment> translated;
+  for (const std::string& language : protocols::languages_of(file)) {
+    translated.emplace(language, load_experiment(file, language));
+  }
+  return translated;
+}
+
+void print_lines(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) {
+    fmt::print("{}\n", line);
+  }
+}
+
+void print_translation(const std::string& language, const Experiment& translated) {
+  fmt::print("language {}: {}\n", language,
+             translated.untranslated.empty() ? "complete" : "incomplete");
+  for (const std::string& sentence : translated.untranslated) {
+    fmt::print("warning: {}\n", sentence);
+  }
+  print_undrawable(translated);
+  print_missing_speech(*translated.definition);
 }
 
 int validate(const ValidateOptions& options) {
   const std::string& file = options.definition;
   const Experiment experiment = load_experiment(file);
-  fmt::print("{}: valid\n", file);
-  if (!options.since.empty()) {
-    print_changes(experiment, options.since);
-  }
+  const std::map<std::string, Experiment> translated = translations_of(file);
+  const std::vector<std::string> changes =
+      options.since.empty() ? std::vector<std::string>() : changes_since(experiment, options.since);
+  fmt::print("{}: valid\n", file);  // nothing is refused from here on
+  print_lines(changes);
   if (const std::string& lab = experiment.definition->lab; !lab.empty()) {
     fmt::print("lab file: {}\n", lab);
   }
-  for (const std::string& line : experiment.definition->description()) {
-    fmt::print("{}\n", line);
-  }
+  print_lines(experiment.definition->description());
   const protocols::Definition& definition = *experiment.definition;
   if (const auto* trials = dynamic_cast<const protocols::TrialsDefinition*>(&definition)) {
-    for (const std::string& line : protocols::costs_of_bodies(*trials)) {
-      fmt::print("{}\n", line);
-    }
+    print_lines(protocols::costs_of_bodies(*trials));
   }
   for (const auto& side : experiment.study->protocol().auxiliary_pages(definition)) {
     fmt::print("page beside the console: {} (haptrial run --console --side-page {})\n",
@@ -91,15 +120,8 @@ int validate(const ValidateOptions& options) {
   print_warnings(experiment);
   print_undrawable(experiment);
   print_missing_speech(definition);
-  for (const std::string& language : protocols::languages_of(file)) {
-    const Experiment translated = load_experiment(file, language);
-    fmt::print("language {}: {}\n", language,
-               translated.untranslated.empty() ? "complete" : "incomplete");
-    for (const std::string& sentence : translated.untranslated) {
-      fmt::print("{}\n", sentence);
-    }
-    print_undrawable(translated);
-    print_missing_speech(*translated.definition);
+  for (const auto& [language, experiment_in_it] : translated) {
+    print_translation(language, experiment_in_it);
   }
   return 0;
 }
@@ -111,8 +133,9 @@ void add_validate(CLI::App& app, int& status) {
                              "haptrial validate first_experiment", {"", "guide-experimenter.md"});
   auto& o = options_of<ValidateOptions>(*sub, status, validate);
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
-  sub->add_option("--since", o.since,
-                  "Session file (.h5): name each key that has changed since, and whether it may "
+  sub->add_option(
+      "--since", o.since,
+      "Session file (.h5): name each key that has changed since, and whether it may "
                   "within a study");
 }
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
@@ -164,6 +165,39 @@ TEST_F(StudioTest, MistakesHaveTheirLines) {
   for (const auto& entry : fs::directory_iterator(folder_.path())) {
     EXPECT_EQ(entry.path().filename(), "mine.toml") << "nothing is left beside it";
   }
+}
+
+TEST_F(StudioTest, TextsInOtherLanguagesAreCheckedWithTheDraft) {
+  const fs::path german = folder_ / "mine.texts.de.toml";
+  write_text(german,
+             "[response]\nquestion = \"Hat es gezogen?\"\nchoices.yes.label = \"Ja\"\n"
+             "choices.nein.label = \"Nein\"\n");
+  const std::string sentence =
+      "mine.texts.de.toml: response.choices.nein.label is no text that participants of this "
+      "definition read; did you mean response.choices.yes.label?";
+  const json draft = post("/validate", {{"file", "mine.toml"}, {"text", text()}});
+  const json saved = get("/study", "file=mine.toml");
+  for (const json& checked : {draft, saved}) {
+    EXPECT_FALSE(checked["valid"]);
+    ASSERT_THAT(checked["remarks"], SizeIs(1)) << checked["remarks"];
+    EXPECT_TRUE(checked["remarks"][0]["mistake"]);
+    EXPECT_EQ(checked["remarks"][0]["text"], sentence);
+  }
+  EXPECT_THAT(
+      test::run_command("cd '" + folder_.path().string() + "' && haptrial validate mine.toml")
+          .output,
+      IsEmpty())
+      << "nothing of it is called valid";
+  write_text(german, "[response]\nquestion = \"Hat es gezogen?\"\nchoices.yes.label = \"Ja\"\n");
+  const json missing = post("/validate", {{"file", "mine.toml"}, {"text", text()}});
+  EXPECT_TRUE(missing["valid"]);
+  ASSERT_THAT(missing["remarks"], SizeIs(1)) << missing["remarks"];
+  EXPECT_FALSE(missing["remarks"][0]["mistake"]);
+  EXPECT_EQ(missing["remarks"][0]["text"],
+            "mine.texts.de.toml: response.choices.no.label is missing; it is shown as the "
+            "definition has it");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator()), 2)
+      << "nothing is left beside them";
 }
 
 TEST_F(StudioTest, AnEditOfTheFormIsOneOfTheTextAlone) {
