@@ -16,6 +16,13 @@ std::int64_t milliseconds_of(fs::file_time_type time) {
   return std::chrono::duration_cast<std::chrono::milliseconds>(since).count();
 }
 
+/// When a session last went to the folder of excluded participants or came back [ms]; 0: never.
+std::int64_t last_exclusion(const fs::path& folder) {
+  std::error_code error;
+  const auto changed = fs::last_write_time(folder / "excluded", error);
+  return error ? 0 : milliseconds_of(changed);
+}
+
 }  // namespace
 
 const FolderFile* SessionFolder::newest_session() const {
@@ -63,7 +70,8 @@ SessionFolder list_sessions(const fs::path& folder) {
   std::ranges::sort(out.results, {}, &FolderFile::name);
   const FolderFile* newest = out.newest_session();
   out.report = report > 0;
-  out.report_is_old = out.report && newest != nullptr && newest->modified > report;
+  out.report_is_old = out.report && std::max(newest != nullptr ? newest->modified : 0,
+                                             last_exclusion(folder)) > report;
   return out;
 }
 

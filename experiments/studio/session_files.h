@@ -20,7 +20,7 @@ struct SessionFolder {
   std::vector<FolderFile> sessions;  // by name
   std::vector<FolderFile> results;   // reports, figures and tables, by name
   bool report{false};                // report.html is there
-  bool report_is_old{false};         // a session is newer than it
+  bool report_is_old{false};         // a session or an exclusion is newer than it
 
   /// Null without sessions.
   const FolderFile* newest_session() const;

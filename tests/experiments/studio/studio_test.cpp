@@ -464,6 +464,24 @@ TEST_F(StudioTest, ARehearsalAndItsReport) {
   EXPECT_TRUE(get("/sessions", "file=mine.toml")["folders"][0]["report_is_old"]);
 }
 
+TEST_F(StudioTest, AReportFromBeforeAnExclusionIsOld) {
+  const std::string in_folder = "cd '" + folder_.path().string() + "' && haptrial ";
+  ASSERT_EQ(test::run_command(in_folder + "dry-run mine.toml --subjects 3 --out out/mine && " +
+                              "haptrial analyze out/mine")
+                .status,
+            0);
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "current");
+  ASSERT_EQ(test::run_command(in_folder + "roster mine.toml out/mine --exclude S03 --because late")
+                .status,
+            0);
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "old");
+  EXPECT_TRUE(get("/sessions", "file=mine.toml")["folders"][0]["report_is_old"]);
+  ASSERT_EQ(test::run_command(in_folder + "analyze out/mine").status, 0);
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "current");
+  fs::rename(folder_ / "out/mine/excluded/S03.h5", folder_ / "out/mine/S03.h5");
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "old") << "a session came back";
+}
+
 TEST_F(StudioTest, APowerAnalysisIsAJob) {
   const json started = post("/power", {{"file", "mine.toml"}});
   EXPECT_EQ(started["command"], "haptrial power simulate mine.toml --out out/mine-power-001");
