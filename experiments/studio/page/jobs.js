@@ -11,7 +11,7 @@ async function show_rehearse(main, file) {
       make("label", {for: "setup"}, word("setup")), setup, make("button", {class: "main", id: "rehearse"}, word("start"))), make("p", {class: "soft", id: "setup_help"}, word("setup_help"))));
   main.append(make("section", {"aria-labelledby": "power_title"}, make("h2", {id: "power_title"}, word("power")), make("p", {}, word("power_help")),
     make("button", {type: "button", id: "power", onclick: () => begin_job("/power", {file})}, word("start"))));
-  main.append(make("section", {"aria-labelledby": "plan_title"}, make("h2", {id: "plan_title"}, word("plan")), make("p", {}, word("plan_help")),
+  main.append(make("section", {"aria-labelledby": "plan_title"}, make("h2", {id: "plan_title"}, word("preregistration")), make("p", {}, word("preregistration_help")),
     make("button", {type: "button", id: "plan", onclick: () => begin_job("/plan", {file})}, word("start"))));
   const list = make("div", {id: "jobs"});
   main.append(make("section", {"aria-labelledby": "jobs_title"}, make("h2", {id: "jobs_title"}, word("jobs")), list));
