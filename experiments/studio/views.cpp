@@ -86,6 +86,17 @@ json files_json(const std::vector<FolderFile>& files) {
   return all;
 }
 
+/// The sessions but those that the roster calls pilots, which are no part of the study.
+SessionFolder without_pilots(SessionFolder held, const json& study) {
+  for (const json& person : study.value("/roster/participants"_json_pointer, json::array())) {
+    for (const json& session : person["pilot"] == true ? person["sessions"] : json::array()) {
+      std::erase_if(held.sessions,
+                    [&](const FolderFile& file) { return session["file"] == file.name; });
+    }
+  }
+  return held;
+}
+
 }  // namespace
 
 StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, LineCommands& tried,
@@ -139,7 +150,8 @@ json StudioViews::study(const std::string& file) const {
   if (checked.status == 0) {
     add_roster(file, out);
   }
-  if (const FolderFile* newest = held.newest_session()) {
+  const SessionFolder of_study = without_pilots(held, out);
+  if (const FolderFile* newest = of_study.newest_session()) {
     add_last_event(sessions + "/" + newest->name, out);
   }
   return out;
@@ -214,11 +226,11 @@ json StudioViews::text(const std::string& file) const {
 json StudioViews::validate(const std::string& file, const std::string& text) const {
   const Draft draft(folder_.definition(file), folder_.path(), text);
   const std::string sessions = StudyFolder::sessions_of(file);
-  const SessionFolder held = held_in(sessions);
+  const bool has_sessions = !held_in(sessions).sessions.empty();
   const auto line_for = [&](const std::string& name) {
     CommandWords words{"validate", name};
-    if (const FolderFile* newest = held.newest_session()) {
-      words.insert(words.end(), {"--since", sessions + "/" + newest->name});
+    if (has_sessions) {
+      words.insert(words.end(), {"--since", sessions});
     }
     return words;
   };

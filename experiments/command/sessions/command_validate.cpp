@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
@@ -42,12 +45,37 @@ void print_missing_speech(const protocols::Definition& definition) {
 
 struct ValidateOptions {
   std::string definition;
-  std::string since;  // session file
+  std::string since;  // session file, or a folder of them
 };
 
+/// The newest of a folder's sessions that can be read; pilots are no part of a study. Empty: there
+/// is none.
+std::string newest_session(const std::string& folder) {
+  std::pair<std::string, std::string> newest;  // start, file
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".h5") {
+      continue;
+    }
+    try {
+      const record::SessionInfo info = record::SessionReader(entry.path()).info();
+      if (!info.pilot) {
+        newest = std::max(newest, {info.start_utc, entry.path().string()});
+      }
+    } catch (const InputError&) {
+      continue;  // analyze and roster name it
+    }
+  }
+  return newest.second;
+}
+
 /// Lines that name the keys in which a session's definition differs.
+/// @param since  session file, or a folder whose newest session is meant
 /// @throws InputError for a file that is no session of the definition's protocol
-std::vector<std::string> changes_since(const Experiment& experiment, const std::string& session) {
+std::vector<std::string> changes_since(const Experiment& experiment, const std::string& since) {
+  const std::string session = std::filesystem::is_directory(since) ? newest_session(since) : since;
+  if (session.empty()) {
+    return {};
+  }
   const record::SessionInfo info = record::SessionReader(session).info();
   const protocols::Protocol& protocol = experiment.study->protocol();
   if (&protocol_of(info) != &protocol) {
@@ -135,8 +163,8 @@ void add_validate(CLI::App& app, int& status) {
   sub->add_option("DEFINITION", o.definition, "Experiment definition (.toml)")->required();
   sub->add_option(
       "--since", o.since,
-      "Session file (.h5): name each key that has changed since, and whether it may "
-                  "within a study");
+      "Session file (.h5), or folder of which the newest session of the study is meant: "
+      "name each key that has changed since, and whether it may within a study");
 }
 
 }  // namespace haptrial::experiments

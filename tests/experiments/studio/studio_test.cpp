@@ -248,7 +248,7 @@ TEST_F(StudioTest, ChangesSinceTheNewestSessionAreNamed) {
     return post("/validate", {{"file", "mine.toml"}, {"text", changed}});
   };
   const json same = since("# The", "# This");
-  EXPECT_EQ(same["command"], "haptrial validate mine.toml --since out/mine/S01.h5");
+  EXPECT_EQ(same["command"], "haptrial validate mine.toml --since out/mine");
   EXPECT_THAT(same["since"],
               ElementsAre("since out/mine/S01.h5: only comments and layout have changed"));
   EXPECT_THAT(since("participants = 6", "participants = 8")["since"],
@@ -256,6 +256,24 @@ TEST_F(StudioTest, ChangesSinceTheNewestSessionAreNamed) {
                           "design.participants was 6, is 8"));
   EXPECT_THAT(since("time = 1.0", "time = 2.0")["since"],
               ElementsAre(HasSubstr(", another study: stages")));
+}
+
+TEST_F(StudioTest, APilotIsNoSessionOfTheStudy) {
+  const auto run = [&](const std::string& arguments) {
+    const auto done =
+        test::run_command("cd '" + folder_.path().string() + "' && haptrial run " +
+                          "mine.toml --device virtual --trials 1 --out out/mine " + arguments);
+    EXPECT_EQ(done.status, 0) << done.errors;
+  };
+  run("--subject T01 --pilot --set procedure.repetitions=1");
+  write_text(folder_ / "out/mine/torn.h5", "no session");
+  const json alone = post("/validate", {{"file", "mine.toml"}, {"text", text()}});
+  EXPECT_TRUE(alone["valid"]) << alone["output"];
+  EXPECT_THAT(alone["since"], IsEmpty());
+  run("--subject P01");
+  run("--subject T02 --pilot --set procedure.repetitions=1");
+  EXPECT_THAT(post("/validate", {{"file", "mine.toml"}, {"text", text()}})["since"],
+              ElementsAre("since out/mine/P01.h5: nothing has changed"));
 }
 
 TEST_F(StudioTest, AWithdrawalIsListedBeforeItIsDone) {
