@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <sstream>
 #include <system_error>
 
 #include "core/base/error.h"
@@ -45,11 +46,19 @@ void check_name(const std::string& name) {
   }
 }
 
-/// Whether a file of TOML defines an experiment; a lab's file does not.
+/// Whether a file of TOML defines an experiment, be it with mistakes; a lab's file does not.
 bool defines_experiment(const fs::path& file) {
   constexpr std::size_t kLooked = 100'000;
+  static const std::regex kTable(
+      R"(\s*(\[\s*["']?experiment\b(?!-)|["']?experiment["']?\s*[.=]).*)");
   try {
-    return file_head(file, kLooked).find("experiment") != std::string::npos;
+    std::istringstream lines(file_head(file, kLooked));
+    for (std::string line; std::getline(lines, line);) {
+      if (std::regex_match(line.substr(0, 200), kTable)) {
+        return true;
+      }
+    }
+    return false;
   } catch (const InputError&) {
     return false;
   }

@@ -136,8 +136,8 @@ TEST_F(StudioTest, StudiesOfTheFolderHaveTheirState) {
   EXPECT_EQ(ready["roster"]["groups"][0]["planned"], 6);
   EXPECT_EQ(ready["roster"]["next"][0]["subject"], "P01");
   write_text(folder_ / "draft.toml", "[experiment]\nprotocol = \"trials\"\nname = 3\n");
-  write_text(folder_ / "mine.texts.de.toml", "");  // no study
-  write_text(folder_ / "lab.toml", "[device]\n");  // nor this
+  write_text(folder_ / "mine.texts.de.toml", "");                                    // no study
+  write_text(folder_ / "lab.toml", "[room]\ncontact = \"experimenter on duty\"\n");  // nor this
   EXPECT_THAT(get("/studies")["files"], ElementsAre("draft.toml", "mine.toml"));
   EXPECT_FALSE(get("/study", "file=draft.toml")["valid"]);
 }
