@@ -106,10 +106,14 @@ StudioViews::StudioViews(const StudyFolder& folder, Commands& commands, LineComm
       tried_(tried),
       page_maker_(page_maker),
       libraries_(std::move(libraries)) {
-  std::string name = (fs::temp_directory_path() / "haptrial-studio-XXXXXX").string();
+  std::error_code error;
+  const fs::path temporary = fs::temp_directory_path(error);
+  if (error) {
+    throw RunError("the folder for temporary files, which TMPDIR names, is not there");
+  }
+  std::string name = (temporary / "haptrial-studio-XXXXXX").string();
   if (::mkdtemp(name.data()) == nullptr) {
-    throw RunError(
-        fmt::format("{}: no folder can be made there", fs::temp_directory_path().string()));
+    throw RunError(fmt::format("{}: no folder can be made there", temporary.string()));
   }
   scratch_ = name;
 }

@@ -38,6 +38,8 @@ TEST(StudioCommandTest, ServesUntilItIsInterrupted) {
   const test::CommandResult none = test::run_command("haptrial studio /nowhere/at/all");
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.errors, HasSubstr("/nowhere/at/all: not a folder"));
+  EXPECT_THAT(test::run_command("TMPDIR=/nowhere/at/all haptrial studio . --no-browser").errors,
+              HasSubstr("the folder for temporary files, which TMPDIR names, is not there"));
 }
 
 constexpr std::array kPictures{"studio-home.png",    "studio-mistake.png", "studio-preview.png",
