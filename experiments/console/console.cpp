@@ -56,11 +56,13 @@ ServerOptions watch_options(const ConsoleOptions& options) {
   return server;
 }
 
-/// The console's page, which then shows nothing that can be pressed.
-std::string watching_page() {
+/// The console's page. @param watches  shows nothing that can be pressed
+std::function<std::string_view()> console_page(bool watches, bool terminal) {
   std::string page(console_page_template());
-  constexpr std::string_view kStart = "<html lang=\"en\">";
-  return page.replace(page.find(kStart), kStart.size(), "<html lang=\"en\" data-watch>");
+  constexpr std::string_view kStart = "<html lang=\"en\"";
+  page.insert(page.find(kStart) + kStart.size(),
+              fmt::format("{}{}", terminal ? " data-terminal" : "", watches ? " data-watch" : ""));
+  return [page = std::move(page)]() -> std::string_view { return page; };
 }
 
 /// Answers a request whose body asks for something.
@@ -102,9 +104,9 @@ void add_routes_of(const std::shared_ptr<protocols::AuxiliaryPage>& side,
 class Console::Implementation {
  public:
   Implementation(SessionControl& control, const ConsoleOptions& options)
-      : control_(control), server_(server_options(options), routes(options.sides)) {
+      : control_(control), server_(server_options(options), routes(options)) {
     if (!options.watch_address.empty()) {
-      watch_.emplace(watch_options(options), watch_routes());
+      watch_.emplace(watch_options(options), watch_routes(options.terminal));
     }
   }
 
@@ -119,21 +121,20 @@ class Console::Implementation {
     return {"/picture", Kind::kRead,
             [this](const WebRequest&) { return picture_answer(control_); }};
   }
-  std::vector<WebRoute> watch_routes() {
-    const auto html = [page = watching_page()]() -> std::string_view { return page; };
-    return {page("/", html), events(), picture()};
+  std::vector<WebRoute> watch_routes(bool terminal) {
+    return {page("/", console_page(true, terminal)), events(), picture()};
   }
-  std::vector<WebRoute> routes(const protocols::AuxiliaryPages& sides) {
-    check_names(sides);
+  std::vector<WebRoute> routes(const ConsoleOptions& options) {
+    check_names(options.sides);
     std::vector<WebRoute> all{
-        page("/", [] { return console_page_template(); }),
+        page("/", console_page(false, options.terminal)),
         events(),
         picture(),
         {"/mirror", Kind::kRead, [this](const WebRequest&) { return mirror_answer(control_); }},
         post("/ask", [this](const std::string& body) { control_.ask(parse_request(body)); }),
         post("/note", [this](const std::string& body) { keep_note(body); }),
         post("/answer", [this](const std::string& body) { give_answer(body); })};
-    for (const auto& side : sides) {
+    for (const auto& side : options.sides) {
       add_routes_of(side, all);
     }
     return all;

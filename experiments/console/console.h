@@ -24,6 +24,7 @@ struct ConsoleOptions {
   protocols::AuxiliaryPages sides{};  // pages beside the console's
   std::string watch_address{};        // of a copy of the page that only looks; may be reached from
                                       // other machines. Empty: there is none
+  bool terminal{false};  // Escape in the session's terminal stops, too, which the page then says
   /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
   std::function<void(const std::string&)> on_refusal;
 };

@@ -92,8 +92,7 @@ class Keyboard::Implementation {
   Implementation(SessionControl& control, int input, int output)
       : control_(control), input_(input), output_(output) {
     int nobody = -1;
-    if (::isatty(input) == 0 || ::tcgetpgrp(input) != ::getpgrp() ||
-        ::tcgetattr(input, &original_) != 0 ||
+    if (!can_read(input) || ::tcgetattr(input, &original_) != 0 ||
         !saved_terminal.compare_exchange_strong(nobody, -2)) {
       return;
     }
@@ -420,6 +419,10 @@ Keyboard::Keyboard(SessionControl& control, int input, int output)
     : implementation_(std::make_unique<Implementation>(control, input, output)) {}
 
 Keyboard::~Keyboard() = default;
+
+bool Keyboard::can_read(int input) {
+  return ::isatty(input) != 0 && ::tcgetpgrp(input) == ::getpgrp();
+}
 
 bool Keyboard::active() const { return implementation_->active(); }
 

@@ -25,6 +25,9 @@ class Keyboard {
   Keyboard(const Keyboard&) = delete;
   Keyboard& operator=(const Keyboard&) = delete;
 
+  /// Whether the input is a terminal, with the program in its foreground.
+  static bool can_read(int input = 0);
+
   /// Whether keys are read.
   bool active() const;
 

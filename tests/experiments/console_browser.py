@@ -113,6 +113,7 @@ def click_through(page, url, folder):
     print("CLOSE", flush=True)
     wait("the loss", lambda: page.text("lost").startswith("CONNECTION LOST"))
     assert page.text("link") == "not connected"
+    assert page.text("lost").endswith("or Ctrl-C in the terminal in which haptrial runs."), page.text("lost")
     page.picture(folder / "console-lost.png")
     page.click("emergency_stop")
     wait("the warning", lambda: "NOT DELIVERED" in page.text("undelivered"))

@@ -154,6 +154,18 @@ TEST_F(LiveStartTest, TheEmergencyCardIsFilledInFromDefinitionAndLabFile) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(LiveStartTest, AtATerminalTheCardNamesItsKeys) {
+  if (!LiveCommand::has_terminals()) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  write_study();
+  const std::string file = "'" + (folder_ / "card.html").string() + "'";
+  LiveCommand made(arguments("--console --card " + file), "", LiveCommand::Where::kTerminal);
+  EXPECT_EQ(made.wait().status, 0) << made.output();
+  EXPECT_THAT(test::read_text(folder_ / "card.html"),
+              HasSubstr("Press Escape in the terminal; Ctrl-C there also ends the session."));
+}
+
 TEST_F(LiveStartTest, AResumedSessionKeepsItsMarks) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";

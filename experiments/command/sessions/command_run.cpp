@@ -97,6 +97,7 @@ SessionSummary attended_session(SessionRequest& request, const RunOptions& optio
       control.note("console: " + sentence);
     };
     console_options.sides = request.auxiliary_pages;
+    console_options.terminal = Keyboard::can_read();
     console = std::make_unique<Console>(control, console_options);
     fmt::print("console: {}\n", console->url());
     if (!options.watch.empty()) {

@@ -21,6 +21,7 @@
 #include "experiments/command/sessions/run_command.h"
 #include "experiments/command/sessions/session_checks.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/control/keyboard.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -155,7 +156,7 @@ int start(const StartOptions& asked) {
   }
   if (!options.card.empty()) {
     const Experiment experiment = load_experiment(options.definition, options.language);
-    write_emergency_card(options, experiment, options.card);
+    write_emergency_card(options, experiment, Keyboard::can_read(), options.card);
     fmt::print("{}: print it and lay it beside the device\n", options.card);
     return 0;
   }

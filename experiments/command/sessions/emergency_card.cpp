@@ -34,7 +34,8 @@ double greatest_force(const std::string& device, const Definition& d) {
   return force;
 }
 
-std::vector<std::string> ways_to_stop(const RunOptions& options, const Definition& d) {
+std::vector<std::string> ways_to_stop(const RunOptions& options, const Definition& d,
+                                      bool terminal) {
   std::vector<std::string> ways;
   for (const std::string& device : options.devices) {
     if (const auto stop = protocols::stop_button_of(d, device); stop && stop->button >= 0) {
@@ -48,9 +49,10 @@ std::vector<std::string> ways_to_stop(const RunOptions& options, const Definitio
   if (options.console) {
     ways.emplace_back("Press EMERGENCY STOP on the experimenter's page, or Escape there.");
   }
-  ways.emplace_back(options.keyboard || options.console
-                        ? "Press Escape in the terminal; Ctrl-C there also ends the session."
-                        : "Press Ctrl-C in the terminal: it also ends the session.");
+  ways.emplace_back(
+      terminal && (options.keyboard || options.console)
+          ? "Press Escape in the terminal; Ctrl-C there also ends the session."
+          : "Press Ctrl-C in the terminal in which haptrial runs: it also ends the session.");
   ways.emplace_back("Switch the device off at its power switch, or pull its plug.");
   if (d.pedal_use() != protocols::PedalUse::kNone) {
     ways.emplace_back("The pedal does NOT stop the force.");
@@ -104,7 +106,7 @@ void add_files(const RunOptions& options, const Definition& d, Document& page) {
                                 options_of_session(options))}});
 }
 
-Document card_of(const RunOptions& options, const Experiment& experiment) {
+Document card_of(const RunOptions& options, const Experiment& experiment, bool terminal) {
   const Definition& d = *experiment.definition;
   Document page;
   page.title = "Emergency card: " + d.name;
@@ -117,7 +119,7 @@ Document card_of(const RunOptions& options, const Experiment& experiment) {
   }
   page.alarm(fmt::format("Greatest force on the hand: {}.", fmt::join(forces, " and ")));
   page.heading("To stop the force at once");
-  page.points(ways_to_stop(options, d));
+  page.points(ways_to_stop(options, d, terminal));
   page.paragraph("Anybody may stop. The force stays zero until the experimenter clears the stop.");
   add_help(protocols::room_of(d.root()), page);
   add_files(options, d, page);
@@ -126,10 +128,10 @@ Document card_of(const RunOptions& options, const Experiment& experiment) {
 
 }  // namespace
 
-void write_emergency_card(const RunOptions& options, const Experiment& experiment,
+void write_emergency_card(const RunOptions& options, const Experiment& experiment, bool terminal,
                           const fs::path& file) {
   WholeFile out(file);
-  out.write(analysis::to_html(card_of(options, experiment)));
+  out.write(analysis::to_html(card_of(options, experiment, terminal)));
   out.finish();
 }
 

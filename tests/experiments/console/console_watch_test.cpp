@@ -70,6 +70,15 @@ TEST_F(ConsoleWatchTest, ShowsTheSessionAndNothingToPress) {
   EXPECT_THAT(asked(console_.port(), console_.token(), "/"), Not(HasSubstr("data-watch>")));
 }
 
+TEST_F(ConsoleWatchTest, ThePageSaysWhetherATerminalStopsTheForce) {
+  ConsoleOptions options;
+  options.terminal = true;
+  const Console other(control_, options);
+  EXPECT_THAT(asked(other.port(), other.token(), "/"),
+              HasSubstr("<html lang=\"en\" data-terminal>"));
+  EXPECT_THAT(asked(console_.port(), console_.token(), "/"), Not(HasSubstr("data-terminal>")));
+}
+
 TEST_F(ConsoleWatchTest, TakesNothing) {
   EXPECT_EQ(status_of(posted(port_, token_, "/ask", R"({"request":"emergency_stop"})")), 404);
   EXPECT_EQ(status_of(posted(port_, token_, "/note", R"({"text":"x"})")), 404);

@@ -172,6 +172,10 @@ TEST_F(StudioSessionsTest, TheEmergencyCardIsAFileBesideTheSessions) {
             "out/mine-card-001.html");
   const std::string card = exchange(reading("/file", "file=out/mine-card-001.html"));
   EXPECT_THAT(card, HasSubstr("Emergency card: mine"));
+  EXPECT_THAT(card, AllOf(HasSubstr("Press EMERGENCY STOP on the experimenter&#39;s page"),
+                          HasSubstr("Press Ctrl-C in the terminal in which haptrial runs"),
+                          Not(HasSubstr("Escape in the terminal"))))
+      << "a session of the studio reads no terminal";
   EXPECT_EQ(post("/card", choice())["file"], "out/mine-card-002.html");
 }
 
