@@ -297,6 +297,16 @@ def back_to(page, studio):
     page.call("POST", "/window", {"handle": studio})
 
 
+def stays_told(page):
+    """The page looks at the session again and again, and takes nothing back by that."""
+    page.click("begin")
+    wait("the refusal", lambda: "a session is running already" in page.text("trouble"))
+    for _ in range(2):
+        before = words(page, "#live .n")
+        wait("another look", lambda: words(page, "#live .n") != before)
+    assert "a session is running already" in page.text("trouble")
+
+
 def live_session(page, folder):
     """A session that is ended in the middle, and resumed to its end."""
     studio = begin_session(page)
@@ -308,6 +318,7 @@ def live_session(page, folder):
     page.call("POST", "/window", {"handle": studio})
     page.run("document.getElementById('live_title').scrollIntoView()")
     page.picture(folder / "studio-session.png")
+    stays_told(page)
     page.click("end_session")
     page.click("really_end")
     wait("the end", lambda: "it can be resumed" in words(page, "#live_state"))

@@ -55,7 +55,7 @@ async function open_draft(file) {
     draft.show();
     say(word("saved"));
   });
-  draft.check = () => attempt(async () => {
+  draft.check = () => by_itself("check", async () => {
     const number = ++draft.checks;
     const checked = await post("/validate", {file, text: draft.editor.text()});
     if (number === draft.checks) draft.show_remarks(checked);

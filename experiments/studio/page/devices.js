@@ -12,7 +12,8 @@ const state_table = (rows, more = () => []) => table([word("part"), word("state"
   rows.map((each) => row(each[0], make("td", {class: "state"}, state_mark(each[1])), make("td", {lang: "en"}, each[2]), ...more(each).map((cell) => cell.cell))));
 
 async function fill_devices_section(section, again = false) {
-  const found = await attempt(() => found_devices(again));
+  const look = () => found_devices(again);
+  const found = await (again ? attempt(look) : by_itself("devices", look));
   if (!found || !section.isConnected) return;
   const reading = make("div", {id: "device_reading"});
   const button = (each, what, act) => ({name: word(what), cell: each && each[1] === "ready" && each[0] !== "replay" ? make("button", {type: "button", id: what + "_" + each[0], "aria-label": word(what) + ": " + each[0], onclick: act}, word(what)) : ""});
@@ -38,7 +39,7 @@ async function follow_device(place, path, body) {
   const output = printed("", "device_output"), state = make("p", {role: "status", id: "device_state"}, word("running"));
   const stop = make("button", {type: "button", id: "stop_reading", onclick: () => attempt(() => post("/cancel", {job: started.job}))}, word("stop"));
   place.replaceChildren(command_line(started.command), make("div", {class: "row"}, state, stop), output);
-  const look = () => attempt(async () => {
+  const look = () => by_itself("reading", async () => {
     const job = (await get("/jobs")).jobs.find((each) => each.job === started.job);
     output.textContent = (await get("/job", {job: started.job})).output;
     output.scrollTop = output.scrollHeight;

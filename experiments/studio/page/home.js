@@ -12,7 +12,7 @@ async function show_home(main) {
   const machine = make("section", {"aria-labelledby": "machine_title"}, make("h2", {id: "machine_title"}, word("machine")), make("p", {class: "soft"}, word("checking")));
   const devices = make("section", {"aria-labelledby": "devices_title"}, make("h2", {id: "devices_title"}, word("devices")), make("p", {class: "soft"}, word("checking")));
   main.append(gallery, devices, machine);
-  attempt(() => fill_gallery(gallery));
+  by_itself("gallery", () => fill_gallery(gallery));
   fill_rows(rows).then(() => fill_devices_section(devices)).then(() => fill_machine(machine));
 }
 

@@ -38,7 +38,7 @@ async function watch_jobs(list) {
   list.firstElementChild && jobs.length > 0 || list.replaceChildren(jobs.length === 0 ? make("p", {class: "soft"}, word("no_jobs")) : "");
   for (const job of jobs) await show_job(list, job);
   if (jobs.some((job) => job.state === "running")) {
-    list.timer = setTimeout(() => attempt(() => watch_jobs(list)), 400);
+    list.timer = setTimeout(() => by_itself("jobs", () => watch_jobs(list)), 400);
   }
 }
 
@@ -71,7 +71,7 @@ function job_card(list, job, id) {
   card.read = async () => { output.textContent = (await get("/job", {job: job.job})).output; output.scrollTop = output.scrollHeight; };
   card.details = make("details", {open: opened_jobs.has(job.job), ontoggle: () => {
     card.details.open ? opened_jobs.add(job.job) : opened_jobs.delete(job.job);
-    if (card.details.open) attempt(card.read);
+    if (card.details.open) by_itself("output", card.read);
   }}, make("summary", {}, word("output")), output);
   card.cancel = make("button", {type: "button", id: id + "_cancel", onclick: () => attempt(async () => { await post("/cancel", {job: job.job}); await watch_jobs(list); })}, word("stop"));
   card.element = make("section", {id, "aria-label": word("job") + " " + job.job}, make("div", {class: "row"}, card.stateText, card.time, card.bar, card.count, card.cancel, card.actions),
@@ -90,7 +90,7 @@ function show_state(card, job) {
     card.bar.value = job.written / job.sessions;
     card.count.textContent = word("sessions_of", {n: job.written, all: job.sessions});
   }
-  if (job.state === "done") attempt(async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$|^.* hours of sessions$/m) || [""])[0]; });
+  if (job.state === "done") by_itself("cost", async () => { card.cost.textContent = ((await get("/job", {job: job.job})).output.match(/^lab time: .*$|^.* hours of sessions$/m) || [""])[0]; });
   if (job.state === "done") card.actions.replaceChildren(...(job.sessions > 0 ? [analyze_button(job.study, job.folder, card.list)] : job.folder ? [report_of(job)] : []));
 }
 

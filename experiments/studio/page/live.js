@@ -51,7 +51,7 @@ function session_form(file, nexts, renew) {
   who.addEventListener("change", show_who);
   device.addEventListener("change", () => { if (device.value === "mouse" || device.value === "gamepad") shows.checked = true; });
   show_who();
-  attempt(async () => { await fill_devices(device, second); begin.disabled = false; });
+  by_itself("devices", async () => { await fill_devices(device, second); begin.disabled = false; });
   return form;
 }
 
@@ -94,7 +94,7 @@ function live_session(renew) {
   const watch = make("p", {id: "watch_at"}), line = make("div", {}), output = printed("", "live_output");
   section.append(make("h2", {id: "live_title"}, word("live")), make("div", {class: "row"}, state, time, open, end), make("p", {class: "soft", id: "console_help"}, word("console_help")), watch, line, output);
   let ran = false;
-  const look = () => attempt(async () => {
+  const look = () => by_itself("session", async () => {
     const session = await get("/session");
     if (session.job === null || !section.isConnected) return;
     const runs = session.state === "running";
@@ -135,7 +135,6 @@ function end_session(job) {
   dialog.showModal();
 }
 
-/// What each participant has done so far, as the roster has it.
 /// Lists what a withdrawal deletes; deletes it once the identifier was typed.
 async function ask_withdrawal(file, subject, renew) {
   const found = await post("/withdraw", {file, subject, sure: false});
@@ -155,6 +154,7 @@ async function ask_withdrawal(file, subject, renew) {
   dialog.showModal();
 }
 
+/// The sessions that each participant has had, as the roster has them.
 function participant_table(study, file, renew) {
   const persons = study.roster && study.roster.participants || [];
   const marks = (person) => [person.pilot && word("pilot"), person.simulated && word("simulated"), person.excluded && word("excluded")].filter((each) => each).join(", ");

@@ -35,14 +35,32 @@ const post = (path, body) => answer_of(fetch(path, {
 }));
 
 function say(text) { by_id("said").textContent = text; clearTimeout(say.timer); say.timer = setTimeout(() => { by_id("said").textContent = ""; }, 4000); }
-function show_trouble(error) { by_id("trouble").textContent = error ? error.message : ""; by_id("trouble").hidden = !error; }
-/// Runs what may fail; a failure is shown as its sentence.
+let failed = "";  // what the sentence in "trouble" is about; "": none is shown
+function show_trouble(error, what) {
+  failed = error ? what : "";
+  by_id("trouble").textContent = error ? error.message : "";
+  by_id("trouble").hidden = !error;
+}
+const kRequest = "request";  // of the user
+/// Runs what the user asked for; a failure is shown as its sentence until the user asks for more.
 async function attempt(work) {
   show_trouble(null);
   try {
     return await work();
   } catch (error) {
-    show_trouble(error);
+    show_trouble(error, kRequest);
+    return undefined;
+  }
+}
+/// Runs what the page does by itself: it takes back its own sentence alone, and never the one that
+/// the user's request was answered with.
+async function by_itself(what, work) {
+  try {
+    const result = await work();
+    if (failed === what) show_trouble(null);
+    return result;
+  } catch (error) {
+    if (failed !== kRequest) show_trouble(error, what);
     return undefined;
   }
 }

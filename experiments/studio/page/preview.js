@@ -14,7 +14,7 @@ function preview_part(file) {
   window.addEventListener("message", (event) => {
     if (event.source === frame.contentWindow && Number.isInteger(event.data.preview_scroll)) scrolled = event.data.preview_scroll;
   });
-  const renew = () => attempt(async () => {
+  const renew = () => by_itself("preview", async () => {
     const number = ++asked;
     state.textContent = word("checking");
     const made = await post("/preview", {file, text: drafts.get(file).editor.text(), trial: Number(trial.value), virtual: virtual.checked, language: kLanguage});

@@ -50,7 +50,7 @@ function result_section(file, folder, chosen) {
     folder.report ? make("a", {href: of_file("report.html"), target: "_blank", rel: "noopener"}, word("open_report")) : null,
     folder.report && !chosen ? report_link(file, folder.folder) : null), command_line("haptrial analyze " + folder.folder));
   if (folder.sessions.length > 0) section.append(hand_over_row(file, folder.folder));
-  attempt(() => fill_remarks(section, folder));
+  by_itself("remarks", () => fill_remarks(section, folder));
   if (chosen) section.append(quality_section(folder));
   if (folder.results.length > 0) {
     section.append(make("details", {}, make("summary", {}, word("files")), file_list(folder.folder, folder.results)));

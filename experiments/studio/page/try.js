@@ -91,7 +91,7 @@ function try_part(file, trial) {
   const move = async (mine) => {
     mine.busy = true;
     const lines = waiting.splice(0, 400);
-    const answer = await attempt(() => post("/try_move", {try: mine.number, lines}));
+    const answer = await by_itself("try", () => post("/try_move", {try: mine.number, lines}));
     mine.busy = false;
     if (run !== mine) return;
     if (!answer) { end(); return; }

@@ -20,11 +20,11 @@ async function show_view() {
   const main = make("main", {id: "main", tabindex: "-1"});
   by_id("main").replaceWith(main);
   main.focus({preventScroll: true});
-  await attempt(() => kViews[view](main, file, more));
+  await by_itself("view", () => kViews[view](main, file, more));
 }
 
 document.documentElement.lang = kLanguage;
 by_id("skip").textContent = word("skip");
-window.addEventListener("hashchange", show_view);
+window.addEventListener("hashchange", () => { show_trouble(null); show_view(); });
 show_view();
-attempt(async () => { by_id("folder").textContent = (await get("/studies")).folder; });
+by_itself("folder", async () => { by_id("folder").textContent = (await get("/studies")).folder; });
