@@ -197,10 +197,8 @@ std::string StudyFolder::save(const std::string& name, const std::string& text,
                               const std::string& stamp) const {
   const fs::path file = definition(name);
   if (read(file, kMostText).stamp != stamp) {
-    throw InputError(
-        fmt::format("{} was changed by another program since it was read here; nothing was saved. "
-                    "Copy your text, and open the definition again",
-                    name));
+    throw InputError(fmt::format(
+        "{} was changed by another program since it was read here; nothing was saved", name));
   }
   write_whole(file, text);
   return stamp_of(text);

@@ -39,7 +39,7 @@ class StudyFolder {
   /// out/STEM-001 and out/STEM-rehearsal-001, as commands and the studio name them. A folder whose
   /// name begins with the longer stem of another definition is that one's.
   std::vector<std::string> session_folders(const std::string& definition) const;
-  /// Names of the folders that such folders were exported to, in order: out/STEM-csv-001,
+  /// Names of the folders that the studio exported such folders to, in order: out/STEM-csv-001,
   /// out/STEM-rehearsal-001-bids-001 and the like.
   std::vector<std::string> export_folders(const std::string& definition) const;
   /// Where sessions with people go: "out/STEM"; need not be there.

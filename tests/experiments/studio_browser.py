@@ -1,10 +1,10 @@
 """A study from the gallery to its report on the studio's page, in headless Chromium, with a session
 of a participant, who sits at the mouse while this prints "sits down" and until it prints "gets up".
 
-    studio_browser.py URL PLAIN_URL FOLDER
+    studio_browser.py URL PLAIN_URL FOLDER STUDIES
 
-The studio at PLAIN_URL has no CodeMirror. Leaves pictures in FOLDER. Exit status 0: all was as it
-should be.
+The studio of the folder STUDIES at PLAIN_URL has no CodeMirror. Leaves pictures in FOLDER. Exit
+status 0: all was as it should be.
 """
 
 import pathlib
@@ -120,6 +120,64 @@ def mend_and_save(page):
     assert not there(page, ".at-line")
     press_with_control(page, "s")
     wait("it is saved", lambda: page.text("saved") == "As saved on disk")
+
+
+def other_programs(page, file):
+    """Another program changes the file of a text that is open."""
+    text = ("const editor = document.querySelector('.CodeMirror');"
+            "return editor ? editor.CodeMirror.getValue() : ''")
+    checks = ("return performance.getEntriesByType('resource')"
+              ".filter((each) => each.name.endsWith('/validate')).length")
+    original = file.read_text()
+
+    def open_view(view):
+        page.run(f"location.hash = '#{view}'")
+        wait(view, lambda: page.run("return document.getElementById('main').innerText") != "")
+
+    def write(line):
+        page.run("document.querySelector('.CodeMirror').CodeMirror.replaceRange("
+                 f"{line!r}, {{line: 0, ch: 0}})")
+    open_view("definition/pulls.toml")
+    wait("the text", lambda: page.run(text) == original)
+    file.write_text("# by another\n" + original)
+    page.run("window.dispatchEvent(new Event('focus'))")
+    wait("the file's text", lambda: page.run(text) == "# by another\n" + original)
+    assert page.text("saved") == "As saved on disk", page.text("saved")
+    open_view("home")
+    file.write_text("# by a third\n" + original)
+    open_view("definition/pulls.toml")
+    wait("the text of the file as it is now", lambda: page.run(text) == "# by a third\n" + original)
+    wait("the check", lambda: page.text("count").startswith("No mistakes"))
+
+    file.write_text("# by a fourth\n" + original)
+    write("# here\n")
+    page.run("document.getElementById('save').click()")
+    refusal = "pulls.toml was changed by another program since it was read here; nothing was saved"
+    wait("the refusal", lambda: page.text("trouble") == refusal)
+    before = page.run(checks)
+    write("# and here\n")
+    wait("a check more", lambda: page.run(checks) > before)
+    wait("its result", lambda: page.text("count").startswith("No mistakes"))
+    assert page.text("trouble") == refusal, "a check takes nothing back that the user was told"
+    open_view("home")
+    open_view("definition/pulls.toml")
+    wait("the choice", lambda: there(page, "#keep_text"))
+    assert page.run("return document.getElementById('trouble').hidden"), "what the user does takes it back"
+    assert page.text("saved") == "Not saved", page.text("saved")
+    page.click("keep_text")
+    assert not there(page, "#keep_text")
+    page.click("save")
+    wait("it is saved", lambda: page.text("saved") == "As saved on disk")
+    assert file.read_text() == "# and here\n# here\n# by a third\n" + original, file.read_text()
+
+    write("# unsaved\n")
+    file.write_text(original)
+    page.run("window.dispatchEvent(new Event('focus'))")
+    wait("the choice", lambda: there(page, "#take_file"))
+    page.click("take_file")
+    wait("the file's text", lambda: page.run(text) == original)
+    assert page.text("saved") == "As saved on disk", page.text("saved")
+    assert file.read_text() == original
 
 
 def by_form(page, folder):
@@ -432,7 +490,7 @@ def without_code_mirror(page, url):
 
 
 def main():
-    url, plain, folder = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3])
+    url, plain, folder, studies = sys.argv[1], sys.argv[2], *map(pathlib.Path, sys.argv[3:])
     page = Driver(folder, ["--lang=en-US"])
     try:
         home(page, url)
@@ -441,6 +499,7 @@ def main():
         page.picture(folder / "studio-mistake.png")
         complete(page)
         mend_and_save(page)
+        other_programs(page, studies / "pulls.toml")
         by_form(page, folder)
         preview(page, folder)
         rehearse(page, folder)
@@ -449,7 +508,8 @@ def main():
         live_session(page, folder)
         results(page, folder)
         changes_since(page, url)
-        bad = [each for each in page.complaints() if "/events" not in each]  # of a console that ended
+        # of a console that ended, and of what was refused as it should be
+        bad = [each for each in page.complaints() if not re.search("/events|/save |/begin ", each)]
         assert not bad, bad
         clean_home(page, url, folder)
         by_keyboard_alone(page, url)

@@ -2,6 +2,13 @@
 // Definition: the text, what is wrong with it, what its keys mean.
 const drafts = new Map();  // file -> the text as it is being written, with its undo
 
+/// A draft that was opened before is compared with its file.
+async function draft_of(file) {
+  if (drafts.has(file)) await drafts.get(file).look();
+  else drafts.set(file, await open_draft(file));
+  return drafts.get(file);
+}
+
 async function show_definition(main, file) {
   const save_button = make("button", {type: "button", class: "main", id: "save"}, word("save"));
   const saved = make("span", {id: "saved", role: "status"});
@@ -9,9 +16,9 @@ async function show_definition(main, file) {
   const remarks = make("ul", {class: "remarks-list", id: "remarks"});
   const plan = make("div", {}), since = make("ul", {class: "remarks-list", id: "since"});
   const since_part = make("div", {hidden: true}, make("h2", {}, word("since_last")), since);
-  main.append(make("h1", {}, file), make("div", {class: "row"}, save_button, saved, count));
-  if (!drafts.has(file)) drafts.set(file, await open_draft(file));
-  const draft = drafts.get(file);
+  const newer = make("div", {id: "newer", role: "alert"});
+  main.append(make("h1", {}, file), make("div", {class: "row"}, save_button, saved, count), newer);
+  const draft = await draft_of(file);
   const key = key_help(draft.editor);
   main.append(make("div", {class: "editor"}, make("section", {"aria-label": word("text_of", {file})}, draft.editor.element),
     make("aside", {}, key, make("section", {"aria-label": word("mistakes", {n: ""})}, remarks, since_part, plan), draft.form.element)));
@@ -20,10 +27,11 @@ async function show_definition(main, file) {
   main.append(make("section", {"aria-label": word("preview")}, beside));
   draft.editor.refresh();
   draft.show = () => {
-    const changed = draft.editor.text() !== draft.text;
+    const changed = draft.newer !== null || draft.editor.text() !== draft.text;
     saved.textContent = word(changed ? "unsaved" : "as_saved");
     saved.className = changed ? "bad" : "soft";
     save_button.disabled = !changed;
+    newer.replaceChildren(...(draft.newer === null ? [] : [choice_of_texts(file, draft)]));
   };
   draft.show_remarks = (checked) => {
     draft.editor.show(checked.remarks);
@@ -43,18 +51,58 @@ async function show_definition(main, file) {
   draft.check();
 }
 
+/// The two ways to go on if another program changed the file while its text was changed here.
+function choice_of_texts(file, draft) {
+  return make("div", {class: "row"}, make("span", {class: "bad"}, word("newer_file", {file})),
+    make("button", {type: "button", id: "take_file", onclick: draft.take_file}, word("take_file")),
+    make("button", {type: "button", id: "keep_text", onclick: draft.keep_text}, word("keep_text")));
+}
+
+const lines_of = (text) => text.replaceAll("\r\n", "\n");
+
 async function open_draft(file) {
-  const read = await get("/text", {file});
-  const windows_lines = read.text.includes("\r\n");  // kept as they are
-  const draft = {text: read.text.replaceAll("\r\n", "\n"), stamp: read.stamp, checks: 0};
-  draft.save = () => attempt(async () => {
+  const draft = {checks: 0, newer: null, show() {}, show_remarks() {}};
+  draft.know = (read) => {
+    draft.windows_lines = read.text.includes("\r\n");  // kept as they are
+    draft.text = lines_of(read.text);
+    draft.stamp = read.stamp;
+    draft.newer = null;
+  };
+  draft.know(await get("/text", {file}));
+  draft.save = async () => {
+    await attempt(async () => {
+      const text = draft.editor.text();
+      const kept = await post("/save", {file, text: draft.windows_lines ? text.replaceAll("\n", "\r\n") : text, stamp: draft.stamp});
+      draft.text = text;
+      draft.stamp = kept.stamp;
+      draft.show();
+      say(word("saved"));
+    });
+    await draft.look();
+  };
+  /// A text that was not changed here follows its file; of one that was, the page offers both.
+  draft.look = () => by_itself("file", async () => {
+    const before = draft.stamp, read = await get("/text", {file});
+    if (draft.stamp !== before) return;  // it was saved meanwhile
     const text = draft.editor.text();
-    const kept = await post("/save", {file, text: windows_lines ? text.replaceAll("\n", "\r\n") : text, stamp: draft.stamp});
-    draft.text = text;
-    draft.stamp = kept.stamp;
+    draft.newer = read.stamp === draft.stamp ? null : read;
+    if (draft.newer !== null && text === draft.text) {
+      draft.take_file();
+      say(word("read_again"));
+    } else if (draft.newer !== null && text === lines_of(read.text)) {
+      draft.know(read);
+    }
     draft.show();
-    say(word("saved"));
   });
+  draft.take_file = () => {
+    draft.know(draft.newer);
+    draft.editor.replace(draft.text);
+    draft.show();
+  };
+  draft.keep_text = () => {
+    draft.know(draft.newer);
+    draft.show();
+  };
   draft.check = () => by_itself("check", async () => {
     const number = ++draft.checks;
     const checked = await post("/validate", {file, text: draft.editor.text()});
@@ -93,6 +141,7 @@ function key_help(editor) {
   return make("section", {"aria-labelledby": "key_title"}, make("h2", {id: "key_title"}, word("key")), name, words);
 }
 
+window.addEventListener("focus", () => { for (const draft of drafts.values()) draft.look(); });
 window.addEventListener("beforeunload", (event) => {
   if ([...drafts.values()].some((draft) => draft.editor.text() !== draft.text)) event.preventDefault();
 });

@@ -35,7 +35,7 @@ function preview_part(file) {
 
 async function show_preview(main, file) {
   main.append(make("h1", {}, file));
-  if (!drafts.has(file)) drafts.set(file, await open_draft(file));
+  await draft_of(file);
   const preview = preview_part(file);
   main.append(make("section", {"aria-label": word("preview")}, preview.element));
   await preview.renew();
