@@ -80,7 +80,8 @@ std::optional<int> proposed_points(const ChecklistItem& item, const ProcedureSum
     return std::nullopt;
   }
   const double share = std::clamp((*value - item.none) / (item.full - item.none), 0.0, 1.0);
-  return static_cast<int>(std::lround(share * item.points));
+  constexpr double kRounding = 1e-9;  // of a share that is a whole number of points
+  return static_cast<int>(std::floor(share * item.points + kRounding));
 }
 
 double total_of(const Checklist& checklist, const std::vector<int>& points) {

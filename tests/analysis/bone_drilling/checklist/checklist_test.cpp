@@ -52,12 +52,30 @@ ProcedureSummary lasting(int seconds) {
 TEST(ChecklistTest, MeasuresProposePointsInProportion) {
   const Checklist list = read(kText);
   ASSERT_EQ(list.items.size(), 2u);
-  const int expected[][2] = {{1, 4}, {2, 4}, {4, 3}, {6, 2}, {9, 1}, {10, 0}, {12, 0}};
+  const int expected[][2] = {{1, 4}, {2, 4}, {3, 3},  {4, 3}, {5, 2},
+                             {6, 2}, {9, 0}, {10, 0}, {12, 0}};
   for (const auto& [seconds, points] : expected) {
     EXPECT_EQ(proposed_points(list.items[0], lasting(seconds)), points) << seconds << " s";
   }
   EXPECT_EQ(proposed_points(list.items[1], lasting(1)), std::nullopt);
   EXPECT_DOUBLE_EQ(total_of(list, {2, 1}), 100.0 * (3.0 * 0.5 + 1.0) / 4.0);
+}
+
+// "All points from this one on": a limit that is not reached is not met.
+TEST(ChecklistTest, AnItemOfOnePointIsMetAtItsLimitOnly) {
+  Checklist list = read(kText);
+  list.items[0].points = 1;
+  EXPECT_EQ(proposed_points(list.items[0], lasting(2)), 1);
+  EXPECT_EQ(proposed_points(list.items[0], lasting(3)), 0);
+}
+
+// (1 - 0.3) / (1.1 - 0.3) of 8 points are 7, and a little less in binary numbers.
+TEST(ChecklistTest, AWholeNumberOfPointsIsNotLostToRounding) {
+  Checklist list = read(kText);
+  list.items[0].points = 8;
+  list.items[0].none = 0.3;
+  list.items[0].full = 1.1;
+  EXPECT_EQ(proposed_points(list.items[0], lasting(1)), 7);
 }
 
 TEST(ChecklistTest, MistakesAreSaid) {
