@@ -105,6 +105,7 @@ TEST_F(SpectrumCommandTest, UnitsAreNotMixed) {
   test::write_text(folder_ / "millinewtons.csv", sensed("force", 400.0));
   test::write_text(folder_ / "none.csv", sensed("force", 0.0));
   test::write_text(folder_ / "neither.csv", "time,volts\n0,1\n");
+  test::write_text(folder_ / "one.csv", "time,force\n0,1\n");
   test::write_text(folder_ / "uneven.csv", "time,force\n0,1\n0.001,1\n0.002,1\n0.004,1\n");
   ASSERT_EQ(run("haptrial spectrum force.csv t.toml --level free").status, 0);
   for (const auto& [line, why] :
@@ -119,6 +120,7 @@ TEST_F(SpectrumCommandTest, UnitsAreNotMixed) {
         {"millinewtons.csv", "allowed: at most 100 [N]"},
         {"none.csv none.toml", "has no line above its noise"},
         {"neither.csv", "has the columns time, volts; allowed: time [s] and either force [N]"},
+        {"one.csv", "one.csv: has 1 samples; allowed: at least 4096"},
         {"uneven.csv", "uneven.csv:5: time is '0.004'; allowed: about 0.001 s after"}}) {
     const auto result = run(std::string("haptrial spectrum ") + line);
     EXPECT_EQ(result.status, 2) << line;

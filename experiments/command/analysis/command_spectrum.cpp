@@ -95,6 +95,14 @@ void check_amplitudes(const analysis::CsvTable& table, bool acceleration,
   }
 }
 
+void check_length(const sound::Recording& recording, const std::string& file) {
+  constexpr std::size_t kFewest = 4096;
+  if (recording.samples.size() < kFewest) {
+    throw InputError(fmt::format("{}: has {} samples; allowed: at least {}", file,
+                                 recording.samples.size(), kFewest));
+  }
+}
+
 /// The table of a sensor: evenly in time, one of two quantities.
 Measured read_table(const std::string& file) {
   constexpr double kUneven = 0.1;                     // of a step
@@ -128,6 +136,7 @@ Measured read_table(const std::string& file) {
                    fmt::format("about {:.6g} s after the row before, as the others are", step));
     }
   }
+  check_length(measured.recording, file);  // a single row has no rate
   measured.recording.rate = static_cast<double>(times.size() - 1) / (times.back() - times.front());
   if (!(measured.recording.rate >= kSlowest && measured.recording.rate <= kFastest)) {
     throw InputError(
@@ -183,11 +192,7 @@ void turn_into_force(const SpectrumOptions& options, Measured& measured) {
 
 sound::PowerSpectrum spectrum_of(const sound::Recording& recording, int segment,
                                  const std::string& file) {
-  constexpr std::size_t kFewest = 4096;
-  if (recording.samples.size() < kFewest) {
-    throw InputError(fmt::format("{}: has {} samples; allowed: at least {}", file,
-                                 recording.samples.size(), kFewest));
-  }
+  check_length(recording, file);
   try {
     return sound::power_spectrum(recording.samples, recording.rate, segment);
   } catch (const std::invalid_argument&) {
