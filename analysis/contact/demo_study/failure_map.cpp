@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numbers>
 
 #include "analysis/document/palette.h"
 #include "analysis/files/csv.h"
+#include "core/base/error.h"
 #include "core/contact/make_renderer.h"
 
 namespace haptrial::evaluation {
@@ -68,19 +70,30 @@ analysis::Look look_of(RidgeOutcome outcome) {
 
 }  // namespace
 
+std::vector<FailureMap::Cell> failure_cells() {
+  std::vector<FailureMap::Cell> cells;
+  for (int degrees = 5; degrees <= 85; degrees += 5) {
+    for (const double depth : kDepths) {
+      cells.push_back({degrees * kDegree, depth, {}, {}});
+    }
+  }
+  return cells;
+}
+
 FailureMap failure_map(
     const std::string& renderer, double friction, double radius,
     const std::function<std::unique_ptr<contact::Renderer>(const Ridge&)>& make) {
-  FailureMap map{renderer, friction, radius, {}};
-  for (int degrees = 5; degrees <= 85; degrees += 5) {
-    Ridge ridge;
-    ridge.flank = degrees * kDegree;
-    const auto renderer_of_it = make(ridge);
-    for (const double depth : kDepths) {
-      const RidgeDrag drag{depth, friction, radius};
-      map.cells.push_back(
-          {ridge.flank, depth, drag_over(ridge, drag, *renderer_of_it), ridge_law(ridge, drag)});
+  FailureMap map{renderer, friction, radius, failure_cells()};
+  Ridge ridge;
+  std::unique_ptr<contact::Renderer> renderer_of_it;
+  for (FailureMap::Cell& cell : map.cells) {
+    if (!renderer_of_it || cell.flank != ridge.flank) {
+      ridge.flank = cell.flank;
+      renderer_of_it = make(ridge);
     }
+    const RidgeDrag drag{cell.depth, friction, radius};
+    cell.result = drag_over(ridge, drag, *renderer_of_it);
+    cell.law = ridge_law(ridge, drag);
   }
   return map;
 }
@@ -165,13 +178,29 @@ FailureMap read_failures(const std::filesystem::path& file) {
   const std::vector<double> depths = table.numbers(table.column("depth_mm"));
   const std::size_t renderer = table.column("renderer"), outcome = table.column("outcome");
   FailureMap map{std::string(table.text(0, renderer)), 0.0, 0.0, {}};
+  constexpr double kSame = 1e-6;  // [rad], [m]
+  std::vector<FailureMap::Cell> missing = failure_cells();
   for (std::size_t i = 0; i < table.rows(); ++i) {
     const auto found = std::ranges::find_if(
         kRidgeOutcomes, [&](RidgeOutcome one) { return table.text(i, outcome) == name_of(one); });
     if (found == kRidgeOutcomes.end()) {
       table.refuse(i, outcome, "an outcome that a map of failures has");
     }
-    map.cells.push_back({flanks[i] * kDegree, 1e-3 * depths[i], RidgeResult{*found, {}, 0.0}, {}});
+    const FailureMap::Cell cell{
+        flanks[i] * kDegree, 1e-3 * depths[i], RidgeResult{*found, {}, 0.0}, {}};
+    const auto same = [&](const FailureMap::Cell& other) {
+      return std::abs(other.flank - cell.flank) < kSame &&
+             std::abs(other.depth - cell.depth) < kSame;
+    };
+    if (std::erase_if(missing, same) == 0) {
+      table.refuse(i, table.column("flank_deg"), "with depth_mm a ridge that is asked, each once");
+    }
+    map.cells.push_back(cell);
+  }
+  if (!missing.empty()) {
+    throw InputError(fmt::format(
+        "{}: has no row for {:.0f} degrees and {} mm; allowed: a row for each of {} ridges",
+        file.string(), missing[0].flank / kDegree, 1e3 * missing[0].depth, failure_cells().size()));
   }
   return map;
 }

@@ -32,6 +32,9 @@ struct FailureMap {
 /// a few seconds. Source: Morris 2006, §7.5 (Figure 65), as a map.
 std::vector<FailureMap> failure_maps();
 
+/// The ridges of a map, without what became of them.
+std::vector<FailureMap::Cell> failure_cells();
+
 /// A map of any renderer. @param make  a renderer of the ridge, with this friction and radius
 FailureMap failure_map(const std::string& renderer, double friction, double radius,
                        const std::function<std::unique_ptr<contact::Renderer>(const Ridge&)>& make);
@@ -42,8 +45,8 @@ std::string name_of(const FailureMap& map);
 analysis::Figure failure_figure(const FailureMap& map);
 /// A row for each cell.
 std::string failure_csv(const std::vector<FailureMap>& maps);
-/// The first map of a file that failure_csv() made: its angles, depths and outcomes.
-/// @throws InputError for another table.
+/// A file that failure_csv() made of one map: its angles, depths and outcomes.
+/// @throws InputError for another table, or one without a row for each of failure_cells().
 FailureMap read_failures(const std::filesystem::path& file);
 
 }  // namespace haptrial::evaluation

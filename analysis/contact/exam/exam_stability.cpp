@@ -11,6 +11,7 @@
 #include "analysis/contact/exam/exam_bodies.h"
 #include "analysis/contact/exam/mesh_file.h"
 #include "analysis/files/csv.h"
+#include "core/base/error.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -66,17 +67,27 @@ constexpr std::array kColumns{"stiffness_N_per_m", "friction", "rate_Hz", "span_
 
 bool StabilityCell::passive() const { return kDamping > 0.5 * stiffness / rate; }
 
-std::vector<StabilityCell> stability_of(Candidate& candidate) {
-  const MeshFile plane(mesh_of(TruePlane{}, 1));
+std::vector<StabilityCell> stability_cells() {
   std::vector<StabilityCell> cells;
   for (const double stiffness : {500.0, 1500.0, 3000.0, 6000.0}) {
     for (const double friction : {0.0, 0.3, 0.6}) {
       for (const double rate : {500.0, 1000.0, 2000.0}) {
-        const ContactTask task{
-            .body = plane.path(), .stiffness = stiffness, .friction = friction, .rate = rate};
-        cells.push_back({stiffness, friction, rate, span_of(candidate, task)});
+        cells.push_back({stiffness, friction, rate});
       }
     }
+  }
+  return cells;
+}
+
+std::vector<StabilityCell> stability_of(Candidate& candidate) {
+  const MeshFile plane(mesh_of(TruePlane{}, 1));
+  std::vector<StabilityCell> cells = stability_cells();
+  for (StabilityCell& cell : cells) {
+    const ContactTask task{.body = plane.path(),
+                           .stiffness = cell.stiffness,
+                           .friction = cell.friction,
+                           .rate = cell.rate};
+    cell.span = span_of(candidate, task);
   }
   return cells;
 }
@@ -97,9 +108,26 @@ std::vector<StabilityCell> read_stability(const std::filesystem::path& file) {
   for (std::size_t c = 0; c < kColumns.size(); ++c) {
     columns[c] = table.numbers(table.column(kColumns[c]));
   }
-  std::vector<StabilityCell> cells;
+  const auto same = [](const StabilityCell& a, const StabilityCell& b) {
+    return a.stiffness == b.stiffness && a.friction == b.friction && a.rate == b.rate;
+  };
+  std::vector<StabilityCell> cells, missing = stability_cells();
   for (std::size_t i = 0; i < table.rows(); ++i) {
-    cells.push_back({columns[0][i], columns[1][i], columns[2][i], columns[3][i]});
+    const StabilityCell cell{columns[0][i], columns[1][i], columns[2][i], columns[3][i]};
+    if (std::erase_if(missing, [&](const StabilityCell& m) { return same(m, cell); }) == 0) {
+      table.refuse(i, table.column(kColumns[0]),
+                   "with friction and rate a cell that is asked, each once");
+    }
+    if (!(cell.span >= 0.0)) {
+      table.refuse(i, table.column(kColumns[3]), "a span of at least 0 [m]");
+    }
+    cells.push_back(cell);
+  }
+  if (!missing.empty()) {
+    throw InputError(fmt::format(
+        "{}: has no row for {} N/m, friction {}, {} Hz; allowed: a row for each of {} cells",
+        file.string(), missing[0].stiffness, missing[0].friction, missing[0].rate,
+        stability_cells().size()));
   }
   return cells;
 }

@@ -22,14 +22,17 @@ struct StabilityCell {
   static constexpr double kStill = 1e-4;  // [m]
 };
 
+/// The cells that are asked, without a span: four stiffnesses from 500 to 6000 N/m, three frictions
+/// from 0 to 0.6, and 500, 1000 and 2000 Hz.
+std::vector<StabilityCell> stability_cells();
+
 /// Lets a hand of 50 g and 1 N·s/m press a point with 2 N on a plane for 3 s, swaying along it with
-/// 0.4 N, the force of a tick held until the next, for four stiffnesses from 500 to 6000 N/m,
-/// three frictions from 0 to 0.6, and 500, 1000 and 2000 Hz. Nobody felt it.
+/// 0.4 N, the force of a tick held until the next, in each of stability_cells(). Nobody felt it.
 std::vector<StabilityCell> stability_of(Candidate& candidate);
 
 /// A row for each cell.
 std::string stability_csv(const std::vector<StabilityCell>& cells);
-/// @throws InputError for another table.
+/// @throws InputError for another table, or one without a row for each of stability_cells().
 std::vector<StabilityCell> read_stability(const std::filesystem::path& file);
 
 }  // namespace haptrial::evaluation

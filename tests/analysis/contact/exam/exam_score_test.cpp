@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "analysis/contact/exam/exam_bodies.h"
 #include "analysis/contact/exam/exam_tools.h"
@@ -226,17 +227,56 @@ TEST_F(WrittenExamTest, TheProxyPassesAndThePenaltyPopsThroughTheThinPlate) {
 TEST_F(WrittenExamTest, AnswersComeBackAndAMissingRowGetsASentence) {
   auto exam = read_exam(path("exam"));
   exam.resize(1);
-  ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, {{500.0, 0.3, 1e3, 2e-5}}};
-  write_answers(answers, FailureMap{"mine", 0.0, 0.0, {}}, exam, path("answers"));
+  ExamAnswers answers{"mine", {{exam[0].truth, 0.5, 1e-6, 2e-6}}, stability_cells()};
+  answers.stability[7].span = 2e-5;
+  write_answers(answers, FailureMap{"mine", 0.0, 0.0, failure_cells()}, exam, path("answers"));
   const ExamAnswers again = read_answers(path("answers"), exam);
   EXPECT_EQ(again.renderer, "mine");
   EXPECT_EQ(again.cases[0].worst_tick, 2e-6);
-  ASSERT_EQ(again.stability.size(), 1u);
-  EXPECT_EQ(again.stability[0].span, 2e-5);
+  ASSERT_EQ(again.stability.size(), 36u);
+  EXPECT_EQ(again.stability[7].span, 2e-5);
+  EXPECT_EQ(read_failures(path("answers/failures.csv")).cells.size(), 17u * 9u);
   EXPECT_LT(score_case(exam[0], again.cases[0].answer).force.worst, 1e-6);  // the files' grain
   exam[0].tool.pop_back();
   EXPECT_THAT(test::message_of<InputError>([&] { read_answers(path("answers"), exam); }),
               testing::HasSubstr("4001 forces; allowed: 4000, one for each row of the path"));
+}
+
+/// Leaving out a cell at which a renderer fails would make it stable in all of them.
+TEST(ExamTablesTest, StabilityHasEveryCellOnce) {
+  const test::TemporaryFolder folder;
+  const auto refusal = [&](const std::vector<StabilityCell>& cells) {
+    std::ofstream(folder / "stability.csv") << stability_csv(cells);
+    return test::message_of<InputError>([&] { read_stability(folder / "stability.csv"); });
+  };
+  std::vector<StabilityCell> cells = stability_cells();
+  std::ranges::reverse(cells);
+  cells[4].span = -5.0;
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("stability.csv:6: span_m is '-5.0000000'"));
+  cells[4].span = 0.0;
+  cells[5].rate = 1500.0;
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("stability.csv:7: stiffness_N_per_m is '6000'"));
+  cells[5] = cells[4];
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("each once"));
+  cells = stability_cells();
+  cells.pop_back();
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("has no row for 6000 N/m, friction 0.6, 2000 Hz; "
+                                                 "allowed: a row for each of 36 cells"));
+}
+
+TEST(ExamTablesTest, AMapOfFailuresHasEveryRidgeOnce) {
+  const test::TemporaryFolder folder;
+  const auto refusal = [&](const std::vector<FailureMap::Cell>& cells) {
+    std::ofstream(folder / "failures.csv") << failure_csv({{"mine", 0.0, 0.0, cells}});
+    return test::message_of<InputError>([&] { read_failures(folder / "failures.csv"); });
+  };
+  std::vector<FailureMap::Cell> cells = failure_cells();
+  cells[3] = cells[2];
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("failures.csv:5: flank_deg is '5'"));
+  cells = failure_cells();
+  cells.pop_back();
+  EXPECT_THAT(refusal(cells), testing::HasSubstr("has no row for 85 degrees and 8 mm; allowed: a "
+                                                 "row for each of 153 ridges"));
 }
 
 }  // namespace
