@@ -514,6 +514,10 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
           "of the factors in `by`",
           [&](Table& table, const std::string&, P& plan) { read_tests(table, defaults, plan); })
       .otherwise("none")
+      .text("tests_of", &P::tests_of,
+            "The quantity that the planned tests are of, by its name in results.json; the same "
+            "tests of others are secondary, and adjusted together")
+      .otherwise("that of analysis.sequential, else the first that is compared")
       .keys_of(&P::plan, tests_beside_schema())
       .custom(
           "covariate",

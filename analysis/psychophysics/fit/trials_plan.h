@@ -80,6 +80,8 @@ struct TrialsPlan {
   std::string baseline;  // session from which changes are compared in place of values; empty: none
   std::vector<std::string> sessions;  // their names, in their order
   AnalysisPlan plan;                  // tests that were planned
+  std::string tests_of;               // the quantity that they are of, as in results.json; empty:
+                                      // that of the sequential rule, else the first
   std::string question;               // whose answer counts; empty: the first
   std::string yes;            // the answer that counts 1; empty: what the procedure learnt, else
                               // the right one

@@ -126,19 +126,21 @@ Quantity quantity(std::string name, std::string title, std::string unit,
 Quantity* compared_quantity(std::vector<Quantity>& all, const std::string& name,
                             std::string_view key) {
   std::vector<std::string> names;
+  Quantity* first = nullptr;
   for (Quantity& each : all) {
     if (!each.compared) {
       continue;
     }
-    if (name.empty() || each.name == name) {
+    if (each.name == name || (name.empty() && each.headline)) {
       return &each;
     }
+    first = first == nullptr ? &each : first;
     names.push_back(each.name);
   }
-  if (!names.empty()) {
+  if (!name.empty() && !names.empty()) {
     throw InputError(fmt::format("{} is \"{}\"; allowed: {}", key, name, fmt::join(names, ", ")));
   }
-  return nullptr;
+  return first;
 }
 
 void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside) {
@@ -152,6 +154,30 @@ void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside) {
         test.beside.equivalence = 0.0;
         test.equivalence = Undefined{kNotAskedFor};
         test.equivalence_holm = Undefined{kNotAskedFor};
+      }
+    }
+  }
+}
+
+void separate_secondary(std::vector<Quantity>& all, const TrialsPlan& plan) {
+  const auto& rule = plan.plan.sequential;
+  const Quantity* primary = compared_quantity(
+      all, plan.tests_of.empty() && rule ? rule->of : plan.tests_of, "analysis.tests_of");
+  const auto is_secondary = [&](const Quantity& q) { return q.compared && &q != primary; };
+  TestFamily together{"secondary", {}};
+  for (const Quantity& each : all) {
+    if (is_secondary(each)) {
+      const auto& own = each.tests.planned.tests;
+      together.tests.insert(together.tests.end(), own.begin(), own.end());
+    }
+  }
+  adjust(together);
+  auto next = together.tests.begin();
+  for (Quantity& each : all) {
+    if (is_secondary(each)) {
+      each.tests.planned.name = together.name;
+      for (SideTest& test : each.tests.planned.tests) {
+        test = *next++;
       }
     }
   }

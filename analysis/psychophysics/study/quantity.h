@@ -41,7 +41,8 @@ std::optional<double> mean_of(const Quantity& q, std::size_t cell);
 /// for quantities of another kind, such as widths beside thresholds.
 TrialsPlan without_directions(TrialsPlan plan);
 
-/// The compared quantity of a name that a definition states; an empty name means the first.
+/// The compared quantity of a name that a definition states; an empty name means the first, of
+/// those on top of a report if there is one.
 /// @param key  of the definition, for the sentence
 /// @returns null if nothing is compared
 /// @throws InputError if no compared quantity has the name
@@ -52,6 +53,12 @@ Quantity* compared_quantity(std::vector<Quantity>& all, const std::string& name,
 /// bound has a unit.
 /// @throws InputError as compared_quantity()
 void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside);
+
+/// Leaves the planned tests to the quantity that they are of. Those of all others are secondary,
+/// with p values that are adjusted over all of them, as one hypothesis is not planned of several
+/// quantities.
+/// @throws InputError as compared_quantity()
+void separate_secondary(std::vector<Quantity>& all, const TrialsPlan& plan);
 
 /// The range that holds every value of a quantity.
 enum class ValueRange { kAny, kPositive, kShare };

@@ -122,7 +122,7 @@ Json to_json(const DesignTests& tests) {
   Json json{{"varied", tests.design},
             {"effects", effects},
             {"on_ranks", defined(tests.ranks)},
-            {"planned", to_json(tests.planned).at("tests")},
+            {tests.planned.name, to_json(tests.planned).at("tests")},
             {"families", families},
             {"left_out", tests.incomplete}};
   if (tests.sequential) {

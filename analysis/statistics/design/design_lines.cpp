@@ -37,8 +37,9 @@ bool is_significant(const SideTest& test, const std::optional<SequentialResult>&
 }
 
 /// A test that finds nothing says what it cannot exclude.
-std::string line_of(const SideTest& test, const std::optional<SequentialResult>& rule) {
-  const std::string name = "Planned, " + text_of(test.sides);
+std::string line_of(const std::string& family, const SideTest& test,
+                    const std::optional<SequentialResult>& rule) {
+  const std::string name = capitalized(family) + ", " + text_of(test.sides);
   if (!test.t || !test.holm) {
     return fmt::format("{}: not defined, because {}", name, test.t.because());
   }
@@ -156,7 +157,7 @@ std::vector<std::string> effect_lines(const DesignTests& tests) {
 std::vector<std::string> planned_lines(const DesignTests& tests) {
   std::vector<std::string> lines;
   for (const SideTest& test : tests.planned.tests) {
-    lines.push_back(line_of(test, tests.sequential));
+    lines.push_back(line_of(tests.planned.name, test, tests.sequential));
   }
   if (tests.sequential) {
     lines.push_back("When the study ends: " + words_of(*tests.sequential));

@@ -27,15 +27,6 @@ void adjust(std::vector<SideTest>& tests, Member member, Adjusted adjusted) {
   }
 }
 
-void adjust(TestFamily& family) {
-  adjust(family.tests, &SideTest::t, &SideTest::holm);
-  adjust(family.tests, &SideTest::ranks, &SideTest::ranks_holm);
-  adjust(family.tests, &SideTest::permutation, &SideTest::permutation_holm);
-  adjust(family.tests, &SideTest::equivalence, &SideTest::equivalence_holm);
-  adjust(family.tests, &SideTest::trimmed, &SideTest::trimmed_holm);
-  adjust(family.tests, &SideTest::adjusted, &SideTest::adjusted_holm);
-}
-
 TestFamily planned_tests(const DesignTable& table, const AnalysisPlan& plan,
                          const Resampling& resampling) {
   TestFamily family{"planned", {}};
@@ -111,6 +102,15 @@ std::string design_in_words(const DesignTable& table) {
 }
 
 }  // namespace
+
+void adjust(TestFamily& family) {
+  adjust(family.tests, &SideTest::t, &SideTest::holm);
+  adjust(family.tests, &SideTest::ranks, &SideTest::ranks_holm);
+  adjust(family.tests, &SideTest::permutation, &SideTest::permutation_holm);
+  adjust(family.tests, &SideTest::equivalence, &SideTest::equivalence_holm);
+  adjust(family.tests, &SideTest::trimmed, &SideTest::trimmed_holm);
+  adjust(family.tests, &SideTest::adjusted, &SideTest::adjusted_holm);
+}
 
 std::vector<NamedTest> named_tests(const TestFamily& family, const std::string& prefix) {
   std::vector<NamedTest> named;

@@ -23,6 +23,9 @@ struct TestFamily {
   std::vector<SideTest> tests;
 };
 
+/// Holm's p values of a family's tests, each kind of test by itself.
+void adjust(TestFamily& family);
+
 /// A test by the name under which simulated studies count it.
 struct NamedTest {
   std::string name;

@@ -272,6 +272,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   add_file_quantities(definition, request.files.files, request.threads, result);
   check_planned(result, remarks);
   trials::keep_equivalence(result.quantities, plan.plan.beside);
+  trials::separate_secondary(result.quantities, plan);
   add_sequential(request, definition, result);
   result.page_scores = std::move(scores);
   result.title = definition.name;

@@ -258,6 +258,7 @@ class TrialsStudySimulation final : public StudySimulation {
       add_file_quantities(d_, files, 1, result);
     }
     trials::keep_equivalence(result.quantities, plan.plan.beside);
+    trials::separate_secondary(result.quantities, plan);
     SimulatedStudy r = simulated_study_of(result);
     r.hours = static_cast<double>(r.trials) * hours_of_trial_;
     return r;

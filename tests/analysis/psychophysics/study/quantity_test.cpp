@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -97,6 +98,49 @@ TEST(QuantityTest, ABoundOfEquivalenceIsOfOneQuantity) {
   EXPECT_EQ(tested("share_wrong"), "share_wrong");
   EXPECT_EQ(test::message_of<InputError>([&] { tested("share_rong"); }),
             "analysis.equivalence_of is \"share_rong\"; allowed: reaction_time, share_wrong");
+}
+
+/// One hypothesis of five quantities is five tests: the first stands alone, as planned, and Holm's
+/// p of the four others is that over these four.
+TEST(QuantityTest, PlannedTestsAreOfOneQuantity) {
+  TrialsPlan plan;
+  plan.by = {"light"};
+  plan.plan = parse_analysis_plan({"off != on"}, "", "tests");
+  const auto five = [&] {
+    std::vector<Quantity> all;
+    for (int k = 0; k < 5; ++k) {
+      std::vector<QuantityValue> values;
+      for (int person = 0; person < 6; ++person) {
+        const std::string name = "P" + std::to_string(person);
+        values.push_back({name, {"off"}, 0.1 * person});
+        values.push_back(
+            {name, {"on"}, 0.1 * person + 0.05 * k + 0.2 * std::sin(7.0 * person + k)});
+      }
+      all.push_back(quantity("q" + std::to_string(k), "number", "", values, plan));
+    }
+    return all;
+  };
+  const auto test_of = [](const Quantity& q) { return q.tests.planned.tests.front(); };
+  std::vector<Quantity> all = five();
+  separate_secondary(all, plan);
+  EXPECT_EQ(all[0].tests.planned.name, "planned");
+  EXPECT_EQ(*test_of(all[0]).holm, test_of(all[0]).t->p);
+  std::vector<double> p;
+  for (int k = 1; k < 5; ++k) {
+    EXPECT_EQ(all[static_cast<std::size_t>(k)].tests.planned.name, "secondary");
+    p.push_back(test_of(all[static_cast<std::size_t>(k)]).t->p);
+  }
+  const auto smallest = std::ranges::min_element(p) - p.begin();
+  EXPECT_NEAR(*test_of(all[static_cast<std::size_t>(smallest + 1)]).holm,
+              std::min(1.0, 4.0 * p[static_cast<std::size_t>(smallest)]), 1e-12);
+  plan.tests_of = "q3";
+  all = five();
+  separate_secondary(all, plan);
+  EXPECT_EQ(all[0].tests.planned.name, "secondary");
+  EXPECT_EQ(*test_of(all[3]).holm, test_of(all[3]).t->p);
+  plan.tests_of = "q9";
+  EXPECT_EQ(test::message_of<InputError>([&] { separate_secondary(all, plan); }),
+            "analysis.tests_of is \"q9\"; allowed: q0, q1, q2, q3, q4");
 }
 
 TEST(QuantityTest, AnOpenValueLeavesNoMean) {
