@@ -137,7 +137,9 @@ std::string words_of(const SequentialResult& result) {
     case SequentialVerdict::kEffect:
       return at + "; the study has ended: there is an effect.";
     case SequentialVerdict::kNoEffect:
-      return at + "; the study has ended without an effect.";
+      return at + (result.test.tail == Tail::kTwoSided
+                       ? "; the study has ended without an effect."
+                       : fmt::format("; the study has ended: {} is not supported.", test));
     case SequentialVerdict::kUndecided:
       return at + "; the study has ended undecided: no more participants may come.";
     case SequentialVerdict::kGoOn:

@@ -20,7 +20,7 @@ struct SequentialLook {
 enum class SequentialVerdict {
   kGoOn,       // the next participant may come
   kEffect,     // the test decided for its alternative
-  kNoEffect,   // its Bayes factor decided against an effect
+  kNoEffect,   // its Bayes factor decided against its alternative
   kUndecided,  // as many as may come have come
 };
 

@@ -149,13 +149,16 @@ std::string effect_result(const EffectTest& effect) {
 
 namespace {
 
-/// "8.37 for an effect", "3.2 against an effect" of 1 / 3.2.
-std::string bayes_result(const Defined<double>& factor) {
-  if (!factor) {
-    return not_defined(factor.because());
+/// "8.37 for an effect", "3.2 against a < b" of 1 / 3.2: a directed test says nothing of an effect
+/// in the other direction.
+std::string bayes_result(const SideTest& test) {
+  if (!test.bayes_factor) {
+    return not_defined(test.bayes_factor.because());
   }
-  return *factor >= 1.0 ? number(*factor) + " for an effect"
-                        : number(1.0 / *factor) + " against an effect";
+  const double factor = *test.bayes_factor;
+  return fmt::format("{} {} {}", number(factor >= 1.0 ? factor : 1.0 / factor),
+                     factor >= 1.0 ? "for" : "against",
+                     test.sides.tail == Tail::kTwoSided ? "an effect" : text_of(test.sides));
 }
 
 std::string equivalence_result(const SideTest& test) {
@@ -190,7 +193,7 @@ std::string adjusted_result(const SideTest& test) {
 std::string tests_beside(const SideTest& test) {
   std::string text;
   if (test.beside.bayes_factors) {
-    text += ", Bayes factor " + bayes_result(test.bayes_factor);
+    text += ", Bayes factor " + bayes_result(test);
   }
   if (test.beside.equivalence > 0.0) {
     text += fmt::format("; a difference of less than {}: {}", number(test.beside.equivalence),

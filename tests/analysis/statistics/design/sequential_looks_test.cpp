@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "analysis/statistics/base/root.h"
+#include "analysis/statistics/design/design_tests.h"
+#include "analysis/statistics/design/wording.h"
 #include "analysis/statistics/tests/bayes_factor.h"
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
@@ -18,6 +20,7 @@ namespace haptrial::analysis {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 std::string name_of(int participant) {
   return (participant < 10 ? "P0" : "P") + std::to_string(participant);
@@ -192,6 +195,27 @@ TEST(SequentialLooksTest, AStudyMayEndWithoutAnEffect) {
     ended += verdict == SequentialVerdict::kNoEffect ? 1 : 0;
   }
   EXPECT_GE(ended, 10);
+}
+
+/// The factor of a directed test against its direction says nothing of an effect the other way.
+TEST(SequentialLooksTest, AnEffectTheOtherWayIsNoLackOfAnEffect) {
+  SequentialPlan plan;
+  plan.none = 3.0;
+  const Simulated study(20, 1.5, 4);  // a is less
+  const PlannedTest greater{"a", "b", Tail::kGreater};
+  const SequentialResult result = sequential_result(study.table, greater, plan, study.order, 20);
+  ASSERT_EQ(result.verdict, SequentialVerdict::kNoEffect);
+  EXPECT_THAT(words_of(result), HasSubstr("the study has ended: a > b is not supported."));
+  EXPECT_THAT(words_of(result), Not(HasSubstr("without an effect")));
+  AnalysisPlan planned;
+  planned.tests = {greater};
+  planned.beside.bayes_factors = true;
+  const DesignTests tests = design_tests(study.table, planned, Resampling{1, "", 0, 1});
+  EXPECT_THAT(side_result(tests.planned.tests[0]), HasSubstr("against a > b"));
+  planned.tests = {{"a", "b", Tail::kLess}};
+  EXPECT_THAT(
+      side_result(design_tests(study.table, planned, Resampling{1, "", 0, 1}).planned.tests[0]),
+      HasSubstr("for a < b"));
 }
 
 /// "analysis.sequential" without a test, or with one that is not planned.
