@@ -15,7 +15,7 @@ constexpr double kShareOfTruth = 0.1;    // below it a force is lost
 constexpr double kShareOfEnergy = 0.01;  // of what goes in and out
 constexpr double kNoticed = 0.05;        // of the samples
 constexpr double kShareOfMomentum = 0.05;
-constexpr double kShareOfShape = 0.1;  // of the way of the vertices
+constexpr double kShareOfShape = 0.1;  // of the way of the vertices, or of a free body's size
 
 Vectors forces_of(const std::vector<Answer>& answers) {
   Vectors forces;
@@ -76,7 +76,8 @@ ExamVerdict verdict_of(const CaseScore& score, const Energy& truth) {
   if (score.energy - score.true_energy > kShareOfEnergy * truth.taken) {
     return ExamVerdict::kGivesEnergy;
   }
-  if (score.soft.root_mean_square > kShareOfShape * score.soft.moved) {
+  if (score.soft.root_mean_square > kShareOfShape * score.soft.moved ||
+      score.soft.deformed > kShareOfShape) {
     return ExamVerdict::kMisshapen;
   }
   return score.noticeable.beyond_low > kNoticed ? ExamVerdict::kNoticeable : ExamVerdict::kRight;

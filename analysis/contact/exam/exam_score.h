@@ -17,9 +17,10 @@ enum class ExamVerdict : std::uint8_t {
   kPopsThrough,    // no force, or one into the body, where there should be one
   kSticks,         // a force in the air
   kInsideOut,      // a tetrahedron of a soft body is turned inside out
-  kLosesMomentum,  // of a free body, or its angular momentum: by more than a twentieth
+  kLosesMomentum,  // of a free body by a twentieth, or its angular momentum: SoftScore
   kGivesEnergy,    // the hand, or a force, gains energy on the way there and back
-  kMisshapen,      // vertices are off by more than a tenth of their way, in the root mean square
+  kMisshapen,      // vertices are off by more than a tenth of their way, or a free body's are by
+                   // a tenth of its size, in the root mean square
   kNoticeable,     // off by more than 7 % of the force on more than a twentieth of the samples
   kRight
 };

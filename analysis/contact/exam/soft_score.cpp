@@ -1,6 +1,8 @@
 #include "analysis/contact/exam/soft_score.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +14,9 @@ namespace {
 
 using deformable::Vectors;
 using Eigen::Vector3d;
+
+/// A body that gives way is turned otherwise than a rigid one by less than this share.
+constexpr double kSpinOfSoftness = 0.15;
 
 /// A quarter of each tetrahedron's mass to its corners [kg].
 std::vector<double> masses_of(const SoftBody& body) {
@@ -97,6 +102,52 @@ Momentum momentum_of(const SoftBody& body, const std::vector<double>& masses, co
   return sum;
 }
 
+/// The angular momentum about the centre of mass that the forces give to a rigid body of these
+/// masses, by Euler's equations [kg·m²/s].
+Vector3d rigid_spin(const ExamCase& one, const SoftBody& body, const std::vector<double>& masses) {
+  double mass = 0.0;
+  Vector3d centre = Vector3d::Zero();
+  for (std::size_t v = 0; v < masses.size(); ++v) {
+    mass += masses[v];
+    centre += masses[v] * body.mesh.vertices[v];
+  }
+  centre /= mass;
+  Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+  for (std::size_t v = 0; v < masses.size(); ++v) {
+    const Vector3d arm = body.mesh.vertices[v] - centre;
+    inertia +=
+        masses[v] * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  }
+  const Eigen::Matrix3d inverse = inertia.inverse();
+  constexpr int kSteps = 20;  // in a tick
+  const double step = 1.0 / one.task.rate / kSteps;
+  Vector3d spin = Vector3d::Zero();
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (std::size_t i = 0; i < kSteps * one.load.size(); ++i) {
+    for (const deformable::NodalForce& f : body.forces) {
+      const Vector3d arm = body.mesh.vertices[static_cast<std::size_t>(f.vertex)] - centre;
+      spin += step * one.load[i / kSteps] * (turn * arm).cross(f.force);
+    }
+    const Vector3d rate = turn * (inverse * (turn.transpose() * spin));
+    turn = Eigen::AngleAxisd(rate.norm() * step, rate.normalized()) * turn;
+  }
+  return spin;
+}
+
+/// How far the vertices are from the shape at rest, moved and turned so that it fits best, as a
+/// share of their distance from the middle; both in the root mean square.
+double deformation(const SoftBody& body, const Vectors& shape) {
+  const auto count = static_cast<Eigen::Index>(shape.size());
+  Eigen::Matrix3Xd rest(3, count), now(3, count);
+  for (Eigen::Index v = 0; v < count; ++v) {
+    rest.col(v) = body.mesh.vertices[static_cast<std::size_t>(v)];
+    now.col(v) = rest.col(v) + shape[static_cast<std::size_t>(v)];
+  }
+  const Eigen::Isometry3d fit(Eigen::umeyama(rest, now, false));
+  const Eigen::Matrix3Xd away = now - fit * rest;
+  return away.norm() / (rest.colwise() - rest.rowwise().mean()).norm();
+}
+
 double momentum_off(const ExamCase& one, const std::vector<Answer>& answers, const SoftBody& body) {
   const double period = 1.0 / one.task.rate;
   Vector3d given = Vector3d::Zero();
@@ -109,6 +160,7 @@ double momentum_off(const ExamCase& one, const std::vector<Answer>& answers, con
   }
   given *= time;
   const std::vector<double> masses = masses_of(body);
+  const Vector3d spin = rigid_spin(one, body, masses);
   double off = 0.0;
   Vector3d first = Vector3d::Zero();
   for (std::size_t k = 0; k + 1 < one.shape_samples.size(); ++k) {
@@ -119,6 +171,9 @@ double momentum_off(const ExamCase& one, const std::vector<Answer>& answers, con
     off = std::max(off, (now.linear - given).norm() / given.norm());
     if (first.norm() > 0.0) {
       off = std::max(off, (now.angular - first).norm() / first.norm());
+    }
+    if (spin.norm() > 0.0) {
+      off = std::max(off, (now.angular - spin).norm() / spin.norm() - kSpinOfSoftness);
     }
   }
   return off;
@@ -136,6 +191,9 @@ SoftScore soft_score(const ExamCase& one, const std::vector<Answer>& answers) {
   }
   if (body.is_free()) {
     score.momentum_off = momentum_off(one, answers, body);
+    for (const std::size_t i : one.shape_samples) {
+      score.deformed = std::max(score.deformed, deformation(body, answers[i].shape));
+    }
   } else {
     add_load_energy(one, answers, body, score);
   }

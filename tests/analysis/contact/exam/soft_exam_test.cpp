@@ -180,8 +180,23 @@ TEST_F(SoftExamTest, AShapeAheadOfItsForcesGivesEnergy) {
   }
 }
 
-/// A rigid body that flies and turns as the forces made it keeps all; one with drag does not.
-TEST_F(SoftExamTest, AFreeBodyKeepsItsMomentum) {
+/// Speed at which a rigid cube of 40 mm turns after a push along its upper side, whose lever gets
+/// shorter as it turns: m a² / 6 θ'' = f (a / 2) cos θ.
+double speed_of_turn(const ExamCase& one, double force, double mass) {
+  constexpr double kSide = 0.04;  // [m]
+  constexpr int kSteps = 100;     // in a tick
+  const double step = 1.0 / one.task.rate / kSteps;
+  double angle = 0.0, speed = 0.0;
+  for (std::size_t i = 0; i < kSteps * one.load.size(); ++i) {
+    speed += step * 3.0 * force * one.load[i / kSteps] * std::cos(angle) / (mass * kSide);
+    angle += step * speed;
+  }
+  return speed;
+}
+
+/// A rigid body that flies and turns as the forces made it keeps all. One with drag, one that turns
+/// otherwise, and one that has grown with the right angular momentum are not right.
+TEST_F(SoftExamTest, AFreeBodyKeepsItsMomentumAndItsShape) {
   const ExamCase& one = named("free-block");
   const SoftBody body = read_soft_body(one.task.body);
   double impulse = 0.0, force = 0.0, mass = 0.0;
@@ -195,24 +210,35 @@ TEST_F(SoftExamTest, AFreeBodyKeepsItsMomentum) {
     mass += 1000.0 / 6.0 * deformable::six_volumes(body.mesh.vertices, body.mesh.tetrahedra[t]);
   }
   EXPECT_NEAR(mass, 0.064, 1e-9);
-  const auto flown = [&](double drag) {
+  const double right = speed_of_turn(one, force, mass);
+  EXPECT_NEAR(right, 37.0, 3.0);
+  const auto flown = [&](double drag, double turning, double growth) {
     std::vector<Answer> answers = one.truth;
     for (const std::size_t i : one.shape_samples) {
       const double time = static_cast<double>(i) / one.task.rate;
       const double way = drag > 0.0 ? (1.0 - std::exp(-drag * time)) / drag : time;
       const Eigen::Matrix3d turn =
-          Eigen::AngleAxisd(4.0 * time, Vector3d::UnitY()).toRotationMatrix();
+          Eigen::AngleAxisd(turning * time, Vector3d::UnitY()).toRotationMatrix();
       for (const Vector3d& p : body.mesh.vertices) {
         const Vector3d arm = p - Vector3d::Constant(0.02);
-        answers[i].shape.push_back(turn * arm - arm +
+        answers[i].shape.push_back(growth * (turn * arm) - arm +
                                    Vector3d(force * impulse / mass * way, 0.0, 0.0));
       }
     }
     return score_case(one, answers);
   };
-  EXPECT_EQ(flown(0.0).verdict, ExamVerdict::kRight);
-  EXPECT_LT(flown(0.0).soft.momentum_off, 1e-6);
-  EXPECT_EQ(flown(5.0).verdict, ExamVerdict::kLosesMomentum);
+  EXPECT_EQ(flown(0.0, right, 1.0).verdict, ExamVerdict::kRight);
+  EXPECT_LT(flown(0.0, right, 1.0).soft.momentum_off, 1e-6);
+  EXPECT_LT(flown(0.0, right, 1.0).soft.deformed, 1e-9);
+  EXPECT_EQ(flown(5.0, right, 1.0).verdict, ExamVerdict::kLosesMomentum);
+  for (const double share : {-1.0, 0.0, 0.6, 1.4}) {
+    EXPECT_EQ(flown(0.0, share * right, 1.0).verdict, ExamVerdict::kLosesMomentum) << share;
+  }
+  for (const double growth : {0.8, 1.2, 5.0}) {
+    const CaseScore grown = flown(0.0, right / (growth * growth), growth);
+    EXPECT_EQ(grown.verdict, ExamVerdict::kMisshapen) << growth;
+    EXPECT_NEAR(grown.soft.deformed, std::abs(growth - 1.0), 1e-9);
+  }
 }
 
 TEST_F(SoftExamTest, LinearElementsAreRightForSmallDisplacements) {
