@@ -47,6 +47,7 @@ class NextCommandTest : public testing::Test {
 /// Lights beside the other finger slow everybody down, so a few participants decide.
 TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   set("sequential.rule", "'\"bayes factor\"'");
+  set("sequential.fewest", "2");
   EXPECT_THAT(next().output, HasSubstr("next: "));  // nobody has come
   rehearse(5);
   const CommandResult decided = next();
@@ -90,6 +91,16 @@ TEST_F(NextCommandTest, LooksThatNobodyReachesAreWarnedOf) {
   set("sequential.looks", "'[6.0, 40.0]'");
   EXPECT_THAT(run("validate crossmodal_congruency.toml").output,
               HasSubstr("after 40 participants, but design.participants is 12"));
+}
+
+TEST_F(NextCommandTest, ARuleThatMissesEffectsIsWarnedOf) {
+  set("sequential.rule", "'\"bayes factor\"'");
+  EXPECT_THAT(run("validate crossmodal_congruency.toml").output, Not(HasSubstr("sequential")));
+  set("sequential.none", "3.0");
+  set("sequential.fewest", "20");
+  EXPECT_THAT(run("validate crossmodal_congruency.toml").output,
+              testing::AllOf(HasSubstr("with 3, about one study in six"),
+                             HasSubstr("fewest is 20, but design.participants is 12")));
 }
 
 TEST_F(NextCommandTest, AFileIsNoFolder) {

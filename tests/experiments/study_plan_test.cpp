@@ -164,6 +164,7 @@ TEST_F(StudyPlanTest, AStatedRuleMayEndTheStudyAndLookAtAnyTime) {
   }
   fs::rename(folder_ / "crossmodal_congruency.toml", folder_ / "study.toml");
   ASSERT_EQ(run("set study.toml analysis.sequential.rule '\"bayes factor\"'").status, 0);
+  ASSERT_EQ(run("set study.toml analysis.sequential.fewest 2").status, 0);
   ASSERT_EQ(run("plan study.toml").status, 0);
   ASSERT_EQ(run("dry-run study.toml --subjects 2 --parts out").status, 0);
   ASSERT_EQ(run("analyze out").status, 0);

@@ -78,6 +78,24 @@ std::vector<double> bounds_of_looks(const SequentialPlan& plan, Tail tail) {
   return spending_bounds(shares, plan.error, tail == Tail::kTwoSided, plan.spending);
 }
 
+std::vector<std::string> warnings_of_factor(const SequentialPlan& plan, int participants) {
+  constexpr double kCautious = 6.0;
+  std::vector<std::string> warnings;
+  if (plan.fewest > participants) {
+    warnings.push_back(fmt::format(
+        "analysis.sequential.fewest is {}, but design.participants is {}: nobody looks before the "
+        "study ends",
+        plan.fewest, participants));
+  }
+  if (plan.none > 0.0 && plan.none < kCautious) {
+    warnings.push_back(fmt::format(
+        "analysis.sequential.none is {:g}: with 3, about one study in six whose effect is half a "
+        "standard deviation ends without it, with 6 one in fifty",
+        plan.none));
+  }
+  return warnings;
+}
+
 std::string value_words(const SequentialResult& result, const SequentialLook& look) {
   const char* name = result.plan.rule == StopRule::kBayesFactor ? "Bayes factor" : "z";
   return look.value ? fmt::format("{} {:.3g}, bound {:.4g}", name, *look.value, look.bound)
@@ -93,7 +111,8 @@ SequentialResult sequential_result(const DesignTable& table, const PlannedTest& 
   Looks looks(table, result, order);
   bool goes_on = true;
   if (plan.rule == StopRule::kBayesFactor) {
-    for (std::size_t n = 2; goes_on && n <= std::min(order.size(), most); ++n) {
+    for (auto n = static_cast<std::size_t>(plan.fewest);
+         goes_on && n <= std::min(order.size(), most); ++n) {
       goes_on = looks.look(n, 1.0 / plan.error);
     }
   } else {
@@ -114,8 +133,13 @@ SequentialResult sequential_result(const DesignTable& table, const PlannedTest& 
 }
 
 std::vector<std::string> sequential_warnings(const AnalysisPlan& plan, int participants) {
-  if (!plan.sequential || plan.sequential->rule != StopRule::kGroupSequential ||
-      plan.sequential->looks.back() == participants) {
+  if (!plan.sequential) {
+    return {};
+  }
+  if (plan.sequential->rule == StopRule::kBayesFactor) {
+    return warnings_of_factor(*plan.sequential, participants);
+  }
+  if (plan.sequential->looks.back() == participants) {
     return {};
   }
   return {fmt::format(
@@ -126,6 +150,11 @@ std::vector<std::string> sequential_warnings(const AnalysisPlan& plan, int parti
 
 std::string words_of(const SequentialResult& result) {
   const std::string test = text_of(result.test);
+  constexpr const char* kUndecided =
+      "; the study has ended undecided: no more participants may come.";
+  if (result.looks.empty() && result.verdict == SequentialVerdict::kUndecided) {
+    return test + ": fewer have come than a look takes" + kUndecided;
+  }
   if (result.looks.empty()) {
     return fmt::format("{}: not looked at yet; go on, with at most {} participants.", test,
                        result.most);
@@ -141,7 +170,7 @@ std::string words_of(const SequentialResult& result) {
                        ? "; the study has ended without an effect."
                        : fmt::format("; the study has ended: {} is not supported.", test));
     case SequentialVerdict::kUndecided:
-      return at + "; the study has ended undecided: no more participants may come.";
+      return at + kUndecided;
     case SequentialVerdict::kGoOn:
       break;
   }

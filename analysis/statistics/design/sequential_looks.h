@@ -41,7 +41,8 @@ SequentialResult sequential_result(const DesignTable& table, const PlannedTest& 
                                    const SequentialPlan& plan, std::span<const std::string> order,
                                    std::size_t most);
 
-/// Sentences on looks that the planned participants do not reach, or that leave some of them out.
+/// Sentences on looks that the planned participants do not reach, or that leave some of them out,
+/// and on a Bayes factor that ends studies without an effect although there is one.
 std::vector<std::string> sequential_warnings(const AnalysisPlan& plan, int participants);
 
 /// "after 14 of at most 40 participants … : go on."

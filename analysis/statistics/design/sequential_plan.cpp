@@ -34,7 +34,8 @@ const Schema<SequentialPlan>& sequential_schema() {
               {{"bayes factor", StopRule::kBayesFactor},
                {"group sequential", StopRule::kGroupSequential}},
               "When the study ends for an effect: when the Bayes factor of the test reaches 1 / "
-              "error, after any participant, or when its t-test passes the bound of a look")
+              "error, after any participant from the fewest on, or when its t-test passes the "
+              "bound of a look")
           .text("test", &P::test, "The planned test that decides, as it is stated there")
           .otherwise("the first planned test")
           .text("of", &P::of, "The quantity whose test decides, by its name in results.json")
@@ -45,6 +46,10 @@ const Schema<SequentialPlan>& sequential_schema() {
           .number("none", &P::none, {0.0, 1e6}, "1",
                   "Bayes factor against an effect at which the study ends without one; 0: it goes "
                   "on to its last participant")
+          .only_if(by_factor)
+          .integer("fewest", &P::fewest, 2, 100'000,
+                   "Participants who come before the Bayes factor is looked at: of a few it is "
+                   "easily against an effect that there is")
           .only_if(by_factor)
           .numbers(
               "looks", &P::looks, {2.0, 100'000.0}, "1",

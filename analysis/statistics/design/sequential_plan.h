@@ -30,6 +30,7 @@ struct SequentialPlan {
   StopRule rule{StopRule::kBayesFactor};
   double error{0.05};
   double none{0.0};  // Bayes factor against an effect at which it ends, too; 0: it does not
+  int fewest{8};     // participants before the first look at the Bayes factor
   std::vector<double> looks;  // participants, ascending whole numbers
   Spending spending{Spending::kOBrienFleming};
 };

@@ -23,12 +23,12 @@ std::string words_of_rule(const SequentialResult& result, const std::string& of)
   const SequentialPlan& plan = result.plan;
   if (plan.rule == StopRule::kBayesFactor) {
     return fmt::format(
-        "The study could end after any participant, if the Bayes factor of {} ({}) reached "
+        "The study could end after any participant from number {} on, if the Bayes factor of {} "
+        "({}) reached "
         "{:g}{}: without an effect that happens with a probability of at most {:g} (Ville's "
         "inequality).",
-        text_of(result.test), of, 1.0 / plan.error,
-        plan.none > 0.0 ? fmt::format(" for an effect or {:g} against one", plan.none) : "",
-        plan.error);
+        plan.fewest, text_of(result.test), of, 1.0 / plan.error,
+        plan.none > 0.0 ? fmt::format(" for it or {:g} against it", plan.none) : "", plan.error);
   }
   return fmt::format(
       "The test {} ({}) was looked at after {:g} participants; the bounds of z spend an error of "
