@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/design/covariate_tests.h"
 #include "analysis/statistics/tests/bayes_factor.h"
 #include "analysis/statistics/tests/trimmed_tests.h"
@@ -60,10 +62,35 @@ void compare_means(SideTest& test, const Sides& values) {
   }
 }
 
+/// The factor of a difference that is the same in all strata, by the t of an analysis of variance
+/// of stratum and side without interaction. Strata that have one side so far tell the variance
+/// alone, so that the order in which groups come does not matter.
+Defined<double> common_bayes_factor(const Sides& values, Tail tail) {
+  double weights = 0.0, sum = 0.0, squares = 0.0, df = -1.0;
+  for (const auto& [stratum, sides] : values.strata) {
+    const auto a = moments(sides.first), b = moments(sides.second);
+    const double n_a = a ? static_cast<double>(a->count) : 0.0;
+    const double n_b = b ? static_cast<double>(b->count) : 0.0;
+    squares += (a ? a->squares : 0.0) + (b ? b->squares : 0.0);
+    df += n_a + n_b - 1.0;
+    if (a && b) {
+      const double weight = n_a * n_b / (n_a + n_b), difference = mean_difference(*a, *b);
+      weights += weight;
+      sum += weight * difference;
+      squares += weight * difference * difference;
+    }
+  }
+  squares -= weights > 0.0 ? sum * sum / weights : 0.0;
+  if (!(weights > 0.0 && df > 0.0 && squares > 0.0)) {
+    return Undefined{"no group has both sides, or the values do not vary within groups"};
+  }
+  return bayes_factor(sum / std::sqrt(weights * squares / df), df, weights, tail);
+}
+
 /// The factor of Student's test, which takes the variances of both sides to be alike.
 Defined<double> bayes_factor_of(const Sides& values, Tail tail) {
-  if (values.strata.size() > 1) {
-    return Undefined{"other groups lie across both sides"};
+  if (values.strata.size() > 1 && !values.paired) {
+    return common_bayes_factor(values, tail);
   }
   const auto n_a = static_cast<double>(values.a.size()), n_b = static_cast<double>(values.b.size());
   const Defined<TTest> t = values.paired ? paired_t_test(values.a, values.b, tail)

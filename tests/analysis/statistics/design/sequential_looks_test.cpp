@@ -252,6 +252,39 @@ TEST(SequentialLooksTest, AnEffectTheOtherWayIsNoLackOfAnEffect) {
       HasSubstr("for a < b"));
 }
 
+/// Two groups at two sites, of which the second comes last: the factor is that of the t of side in
+/// values ~ site + side, here of R's lm(), and is there while one group of a site is missing.
+TEST(SequentialLooksTest, AnotherFactorBetweenPeopleLeavesTheFactorDefined) {
+  const std::vector<std::pair<const char*, double>> x{{"a", 0.1}, {"b", 1.4}, {"a", -0.6},
+                                                      {"b", 0.9}, {"a", 0.5}, {"b", 1.1}};
+  const std::vector<std::pair<const char*, double>> y{
+      {"a", 10.2}, {"a", 9.6}, {"b", 11.5}, {"a", 10.1}, {"b", 10.4}};
+  std::vector<Observation> values;
+  std::vector<std::string> order;
+  for (const auto& [site, people] : {std::pair("x", x), std::pair("y", y)}) {
+    for (const auto& [side, value] : people) {
+      order.push_back(name_of(static_cast<int>(order.size()) + 1));
+      values.push_back({order.back(), {side, site}, value});
+    }
+  }
+  const DesignTable table = design_table(values, {"side", "site"});
+  SequentialPlan plan;
+  plan.fewest = 2;
+  plan.error = 0.001;
+  const auto result = sequential_result(table, {"a", "b", Tail::kLess}, plan, order, 20);
+  ASSERT_EQ(result.looks.size(), 10u);
+  const auto at = [&](std::size_t n) { return result.looks[n - 2].value; };
+  EXPECT_EQ(result.verdict, SequentialVerdict::kGoOn);
+  // t, degrees of freedom and 1 / the variance of the coefficient over that of the residuals.
+  const auto expect = [&](std::size_t n, double t, double df, double size) {
+    ASSERT_TRUE(at(n)) << n << ": " << at(n).because();
+    EXPECT_NEAR(*at(n) / *bayes_factor(t, df, size, Tail::kLess), 1.0, 1e-6) << n;
+  };
+  expect(6, -3.21269802058, 4.0, 1.5);
+  expect(8, -3.2242337777, 5.0, 1.5);
+  expect(11, -3.95225745404, 8.0, 2.7);
+}
+
 /// "analysis.sequential" without a test, or with one that is not planned.
 TEST(SequentialLooksTest, TheDecisiveTestIsAPlannedOne) {
   const auto problem = [](const std::string& text) {
