@@ -103,7 +103,8 @@ Document judging_report(const Judging& judging, bool simulated) {
   page.paragraph(
       fmt::format("R² of {} curves, each participant of {} predicted from the others: {:.3f}, 95 % "
                   "CI {:.3f} to "
-                  "{:.3f} over participants; p = {:.3f} by 999 shuffles of the judgements.",
+                  "{:.3f} over participants; p = {:.3f} by 999 shuffles of the judgements, of "
+                  "participants' means and within participants.",
                   skill.curves, skill.people, skill.r_squared, skill.low, skill.high, skill.p));
   if (!skill.predicts) {
     return page;

@@ -4,11 +4,14 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
+#include "analysis/statistics/base/distributions.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis {
@@ -88,7 +91,7 @@ class Curves {
     }
   }
 
-  std::size_t people() const { return people_.size(); }
+  const std::vector<Person>& people() const { return people_; }
 
   void judge(std::span<const double> judged) {
     all_ = {};
@@ -148,13 +151,23 @@ double r_squared(const std::vector<std::array<double, 2>>& errors) {
   return from_mean > 0.0 ? 1.0 - error / from_mean : 0.0;
 }
 
-/// Central 95 % of the values, which are put in order.
-std::array<double, 2> middle(std::vector<double>& values) {
+/// Participants drawn again differ less than others would, by n - 1 to n in the variance, and as if
+/// their spread were known: ratio of the interval that Student's t gives to that of the quantiles.
+double widening(std::size_t people) {
+  const auto n = static_cast<double>(people);
+  return t_quantile(0.975, n - 1.0) / normal_quantile(0.975) * std::sqrt(n / (n - 1.0));
+}
+
+/// The interval of an estimate from the central 95 % of its values among participants drawn again,
+/// which are put in order; it lies above `least` and below 1.
+std::array<double, 2> interval(std::vector<double>& values, double estimate, std::size_t people,
+                               double least) {
   std::ranges::sort(values);
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  const auto end = [&](double share) {
+    const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+    return estimate + widening(people) * (values[at] - estimate);
   };
-  return {at(0.025), at(0.975)};
+  return {std::clamp(end(0.025), least, estimate), std::clamp(end(0.975), estimate, 1.0)};
 }
 
 Vector3d shares_of(const Fit& fit) {
@@ -179,22 +192,49 @@ void add_intervals(const Curves& curves, const std::vector<std::array<double, 2>
       shares[j].push_back(own[static_cast<Eigen::Index>(j)]);
     }
   }
-  std::tie(result.low, result.high) = std::tuple_cat(middle(explained));
+  std::tie(result.low, result.high) = std::tuple_cat(
+      interval(explained, result.r_squared, result.people, -std::numeric_limits<double>::max()));
   for (std::size_t j = 0; j < 3; ++j) {
-    std::tie(result.shares[j].low, result.shares[j].high) = std::tuple_cat(middle(shares[j]));
+    JudgedShare& share = result.shares[j];
+    std::tie(share.low, share.high) =
+        std::tuple_cat(interval(shares[j], share.value, result.people, 0.0));
   }
 }
 
-/// Share of shuffles whose R² is as high, the judgements themselves among them.
-double shuffled_p(Curves curves, std::vector<double> judged, double found, std::uint64_t seed) {
+template <class T>
+void shuffle(std::vector<T>& values, RandomStream& random) {
+  for (std::size_t k = values.size(); k > 1; --k) {
+    std::swap(values[k - 1], values[random.below(k)]);
+  }
+}
+
+/// Share of shuffles whose R² is as high, the judgements themselves among them. Curves of one
+/// participant are alike, and so are their judgements, whether or not these follow the parts: the
+/// means of participants are exchanged, and deviations from a mean within a participant.
+double shuffled_p(Curves curves, std::span<const double> judged, double found, std::uint64_t seed) {
   RandomStream random(seed, "judgements shuffled");
+  std::vector<double> means;
+  std::vector<std::vector<double>> deviations;
+  for (const Person& person : curves.people()) {
+    means.push_back(person.sums.y / person.sums.n);
+    auto& own = deviations.emplace_back();
+    for (const std::size_t curve : person.curves) {
+      own.push_back(judged[curve] - means.back());
+    }
+  }
+  std::vector<double> shuffled(judged.size());
   int as_high = 1;
   for (int i = 0; i < kResamples; ++i) {
-    for (std::size_t k = judged.size(); k > 1; --k) {
-      std::swap(judged[k - 1], judged[random.below(k)]);
+    shuffle(means, random);
+    for (std::size_t person = 0; person < means.size(); ++person) {
+      shuffle(deviations[person], random);
+      const auto& own = curves.people()[person].curves;
+      for (std::size_t k = 0; k < own.size(); ++k) {
+        shuffled[own[k]] = means[person] + deviations[person][k];
+      }
     }
-    curves.judge(judged);
-    as_high += r_squared(curves.errors(judged)) >= found;
+    curves.judge(shuffled);
+    as_high += r_squared(curves.errors(shuffled)) >= found;
   }
   return static_cast<double>(as_high) / (kResamples + 1);
 }
@@ -220,9 +260,9 @@ Defined<SkillFit> fit_skill(const Eigen::MatrixX3d& parts, std::span<const doubl
     throw std::invalid_argument("fit_skill: parts, judgements and people differ in number");
   }
   Curves curves(parts, people);
-  if (curves.people() < kFewestPeople) {
+  if (curves.people().size() < kFewestPeople) {
     return Undefined{fmt::format("it takes curves of {} participants, and there are {}",
-                                 kFewestPeople, curves.people())};
+                                 kFewestPeople, curves.people().size())};
   }
   if (std::ranges::min(judged) == std::ranges::max(judged)) {
     return Undefined{"all judgements are alike"};
@@ -230,7 +270,7 @@ Defined<SkillFit> fit_skill(const Eigen::MatrixX3d& parts, std::span<const doubl
   curves.judge(judged);
   SkillFit result;
   result.curves = judged.size();
-  result.people = curves.people();
+  result.people = curves.people().size();
   const Vector3d shares = shares_of(curves.fit_all());
   for (std::size_t j = 0; j < 3; ++j) {
     result.shares[j].value = shares[static_cast<Eigen::Index>(j)];
@@ -238,7 +278,7 @@ Defined<SkillFit> fit_skill(const Eigen::MatrixX3d& parts, std::span<const doubl
   const auto errors = curves.errors(judged);
   result.r_squared = r_squared(errors);
   add_intervals(curves, errors, seed, result);
-  result.p = shuffled_p(curves, {judged.begin(), judged.end()}, result.r_squared, seed);
+  result.p = shuffled_p(curves, judged, result.r_squared, seed);
   result.predicts = result.p < kLevel && result.r_squared > 0.0;
   result.determined =
       result.predicts && std::ranges::all_of(result.shares, [](const JudgedShare& share) {

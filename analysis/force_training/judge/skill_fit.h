@@ -32,9 +32,10 @@ struct SkillFit {
 };
 
 /// Fits judgement = a - sum w_j part_j with w >= 0 by least squares. R² is cross-validated, a
-/// participant left out at a time; intervals resample participants (999 times), p counts 999
-/// shuffles of the judgements over all curves. Undefined with fewer than four participants, or if
-/// the judgements are all alike.
+/// participant left out at a time; intervals resample participants (999 times) and are widened as
+/// Student's t is for as many; p counts 999 shuffles of the judgements, of the means of
+/// participants and within each participant. Undefined with fewer than four participants, or if the
+/// judgements are all alike.
 /// @param parts     (curves x 3) of the score, as TrialScore has them
 /// @param judged    (curves) mean judgement, higher is better
 /// @param people    (curves) participant of each, any numbers
