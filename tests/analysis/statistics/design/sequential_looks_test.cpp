@@ -207,8 +207,8 @@ TEST(SequentialLooksTest, EffectsEndStudiesBeforeTheirLastParticipant) {
   EXPECT_NEAR(large.participants, 19.9, 1.0);
 }
 
-/// Of studies with an effect of half a standard deviation few may end without it; the counts of
-/// 2,000 that were computed apart from the program are 344 and 42.
+/// Few studies with an effect of half a standard deviation may end without it; the counts of 2,000
+/// that were computed apart from the program are 344 and 42.
 TEST(SequentialLooksTest, FewStudiesMissTheirEffect) {
   const Ends hasty = ends_of(10'000, 0.5, Tail::kGreater, 3.0);
   const Ends cautious = ends_of(10'000, 0.5, Tail::kGreater, 6.0);
