@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 /// The spring between hand and ball and the body behind it, along each other; friction bends a
 /// bristle that is no stiffer. Of a body that moves or is not prepared the spring alone is known.
-/// What moves keeps an account of its energy, in which the hand has a damping.
+/// A moving body keeps an account of its energy, in which the hand has a damping.
 StiffnessBound DeformableObjectParameters::bound() const {
   const double behind = body ? deformable::stiffest_touch(*body, tool.radius)
                              : std::numeric_limits<double>::infinity();

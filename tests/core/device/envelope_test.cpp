@@ -486,7 +486,7 @@ TEST(EnvelopeTest, WhatChangesByGoingOverFades) {
   EXPECT_EQ(tick({4, 2, 0}, pulse), Vector3d(4, 2, 0)) << "a stimulus begins as it is meant to";
 }
 
-/// Of two stimuli one ends with the change and one goes on: an alternating force of 3 N.
+/// One of two stimuli ends with the change, and one goes on: an alternating force of 3 N.
 TEST(EnvelopeTest, AStimulusThatEndsByGoingOverFades) {
   EnvelopeLimits limits = open_limits();
   limits.change_time = 0.1;
