@@ -202,8 +202,19 @@ bool has_text(const fs::path& file) {
   return !kCompressed.contains(file.extension().string());
 }
 
-bool names(const fs::path& file, const std::string& subject) {
-  return has_word(file.string(), subject) || (has_text(file) && has_word(file_text(file), subject));
+/// Whether a text names a participant. A plain number stands in texts for other things, too.
+bool text_names(const std::string& text, const std::string& subject) {
+  const bool number = std::ranges::all_of(subject, [](char c) { return c >= '0' && c <= '9'; });
+  return !number && has_word(text, subject);
+}
+
+/// Whether the way from one of the given folders to a file names a participant.
+bool path_names(const fs::path& file, const std::vector<fs::path>& folders,
+                const std::string& subject) {
+  const auto given =
+      std::ranges::find_if(folders, [&](const fs::path& folder) { return is_below(file, folder); });
+  const fs::path way = given == folders.end() ? file : file.lexically_relative(*given);
+  return has_word(way.string(), subject);
 }
 
 /// Participants of the session files that can be read, and files of other participants in whose
@@ -215,9 +226,10 @@ struct OtherSessions {
 
 bool names_in(const record::SessionReader& reader, const std::string& subject) {
   const auto events = reader.events();
-  return has_word(reader.info().definition, subject) ||
-         std::ranges::any_of(
-             events, [&](const record::EventRow& event) { return has_word(event.text, subject); });
+  return text_names(reader.info().definition, subject) ||
+         std::ranges::any_of(events, [&](const record::EventRow& event) {
+           return text_names(event.text, subject);
+         });
 }
 
 OtherSessions other_sessions(const std::vector<fs::path>& files, const std::string& subject) {
@@ -277,36 +289,45 @@ bool lies_in(const std::set<fs::path>& folders, const fs::path& file,
   return false;
 }
 
-/// Sorts the files that are no sessions. A file without the participant's name counts if it lies
-/// beside or below one that has it, and is younger than the first session: stimuli and notes stay.
+fs::file_time_type first_written(const std::vector<fs::path>& files) {
+  fs::file_time_type first = fs::file_time_type::max();
+  for (const fs::path& file : files) {
+    first = std::min(first, fs::last_write_time(file));
+  }
+  return first;
+}
+
+/// Sorts the files that are no sessions. A file counts by its name; by its text, or without the
+/// participant's name beside or below a file that counts, if it is younger than the first session:
+/// stimuli and notes stay.
 /// @param foreign  folders in which nothing was made from the participant's sessions
-void sort_others(const std::vector<fs::path>& files, const std::string& subject,
-                 const std::vector<fs::path>& foreign, Withdrawal& found) {
+void sort_others(const std::vector<fs::path>& files, const std::vector<fs::path>& folders,
+                 const std::string& subject, const std::vector<fs::path>& foreign,
+                 Withdrawal& found) {
+  const fs::file_time_type first = first_written(found.sessions);
   const auto is_foreign = [&](const fs::path& file) {
     return std::ranges::any_of(foreign, [&](const auto& each) { return is_below(file, each); });
   };
+  const auto is_younger = [&](const fs::path& file) { return fs::last_write_time(file) >= first; };
   std::vector<fs::path> unnamed;
   for (const fs::path& file : files) {
     if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList ||
         is_plan(file)) {
       continue;
     }
-    if (names(file, subject)) {
-      (is_made(file) && !is_foreign(file) ? found.made : found.others).push_back(file);
+    const bool by_path = path_names(file, folders, subject);
+    if (by_path || (has_text(file) && text_names(file_text(file), subject))) {
+      const bool made = is_made(file) && !is_foreign(file) && (by_path || is_younger(file));
+      (made ? found.made : found.others).push_back(file);
     } else if (!is_foreign(file)) {
       unnamed.push_back(file);
     }
   }
-  fs::file_time_type first = fs::file_time_type::max();
-  for (const fs::path& session : found.sessions) {
-    first = std::min(first, fs::last_write_time(session));
-  }
-  const std::set<fs::path> folders = folders_with(found.sessions, found.made);
+  const std::set<fs::path> beside = folders_with(found.sessions, found.made);
   const OtherSessions others = other_sessions(files, subject);
   found.others.insert(found.others.end(), others.naming.begin(), others.naming.end());
   std::ranges::copy_if(unnamed, std::back_inserter(found.made), [&](const fs::path& file) {
-    return is_made(file) && lies_in(folders, file, others.participants) &&
-           fs::last_write_time(file) >= first;
+    return is_made(file) && lies_in(beside, file, others.participants) && is_younger(file);
   });
   std::ranges::sort(found.made);
 }
@@ -381,8 +402,8 @@ Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::stri
     throw InputError(
         fmt::format("{} has no session file in {}", subject, folders.front().string()));
   }
-  sort_others(files, subject, foreign_exports(files, folders.front(), subject, found.sessions),
-              found);
+  sort_others(files, folders, subject,
+              foreign_exports(files, folders.front(), subject, found.sessions), found);
   find_reasons(files, folders.front(), found);
   return found;
 }

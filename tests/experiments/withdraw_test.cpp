@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 #include "experiments/study/withdrawal.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
@@ -187,6 +188,27 @@ TEST_F(WithdrawTest, SessionsAndExportsOfAnotherStudyStay) {
        {"mine/S02.h5", "mine_tables", "mine_bids/participants.tsv", "mine_bids/sub-S02"}) {
     EXPECT_FALSE(fs::exists(folder_ / "backup" / name)) << name;
   }
+}
+
+/// A number is a participant's name in names of files; in texts it is most things else.
+TEST_F(WithdrawTest, TextsDoNotNameAParticipantByAPlainNumber) {
+  const fs::path out = folder_ / "numbers";
+  for (const char* subject : {"1", "2"}) {
+    ASSERT_EQ(
+        run(std::string("run mine.toml --device virtual --trials 1 --out numbers --subject ") +
+            subject)
+            .status,
+        0);
+  }
+  write_whole(out / "stimuli.csv", "level,name\n1,a\n2,b\n");
+  write_whole(out / "about-1.csv", "a,b\n");
+  fs::last_write_time(out / "stimuli.csv",
+                      fs::last_write_time(out / "1.h5") - std::chrono::hours(1));
+  const auto listed = run("withdraw numbers 1 --dry-run");
+  EXPECT_EQ(listed.status, 0) << listed.errors;
+  EXPECT_THAT(listed.output, AllOf(HasSubstr("would delete numbers/1.h5"),
+                                   HasSubstr("would delete numbers/about-1.csv"),
+                                   Not(HasSubstr("stimuli")), Not(HasSubstr("2.h5"))));
 }
 
 TEST_F(WithdrawTest, BytesOfCompressedFilesAreNoWords) {
