@@ -265,14 +265,13 @@ TEST(SoftTissueTest, ATickDoesNotAllocate) {
 TEST(SoftTissueTest, StructuresThatAreNotThereAreRefused) {
   const SoftTissueParameters carotid[] = {{"carotid", 400.0, 1.0, 0.2}};
   EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(layer(), carotid); }),
-            "soft_tissue: the bone layer has no structure 'carotid'; it has bone, sigmoid sinus "
-            "and dura");
+            "soft_tissue: the bone layer has no structure 'carotid'; it has sigmoid sinus and "
+            "dura");
   BoneModel named = layer();
   named.structures.push_back({"tooth"});
   const SoftTissueParameters tooth[] = {{"tooth", 400.0, 1.0, 0.2}};
   EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(named, tooth); }),
-            "soft_tissue: the bone layer has no structure 'tooth'; it has bone, sigmoid sinus and "
-            "dura");
+            "soft_tissue: the bone layer has no structure 'tooth'; it has sigmoid sinus and dura");
   const SoftTissueParameters twice[] = {dura(1.0), {"sigmoid sinus", 400.0, 1.0, 0.2}};
   EXPECT_EQ(haptrial::test::message_of([&] { check_soft_tissue(layer(), twice); }),
             "soft_tissue: 'sigmoid sinus and dura' is named twice");
