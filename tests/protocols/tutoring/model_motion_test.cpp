@@ -123,7 +123,7 @@ TEST(TutoredPassTest, ARecordedRunWaitsWhileThePauseIsAskedForInAnyProtocol) {
   double before = 1e-3;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double step = rows[i].time - rows[i - 1].time;
-    const bool waits = (i > 200 && i <= 350) || (i > 450 && i <= 500);
+    const bool waits = (i > 200 && i <= 351) || (i > 450 && i <= 501);
     ASSERT_NEAR(step - before, 0.0, 1e-3 / 80.0 + 1e-9) << i;
     ASSERT_FALSE(waits ? step > before + 1e-12 : step < before - 1e-12) << i;
     before = step;
