@@ -277,7 +277,7 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
 }
 
 std::string tested_title(const TrialsResult& result, const Quantity& q) {
-  const bool same = q.unit.empty() || q.unit == result.plan.function.axis.unit;
+  const bool same = !on_axis(q) || q.unit == result.plan.function.axis.unit;
   return q.title + (same ? "" : ", in " + q.unit);
 }
 

@@ -161,8 +161,10 @@ void keep_equivalence(std::vector<Quantity>& all, const TestsBeside& beside) {
 
 void separate_secondary(std::vector<Quantity>& all, const TrialsPlan& plan) {
   const auto& rule = plan.plan.sequential;
-  const Quantity* primary = compared_quantity(
-      all, plan.tests_of.empty() && rule ? rule->of : plan.tests_of, "analysis.tests_of");
+  const bool by_rule = plan.tests_of.empty() && rule;
+  const Quantity* primary =
+      compared_quantity(all, by_rule ? rule->of : plan.tests_of,
+                        by_rule ? "analysis.sequential.of" : "analysis.tests_of");
   const auto is_secondary = [&](const Quantity& q) { return q.compared && &q != primary; };
   TestFamily together{"secondary", {}};
   for (const Quantity& each : all) {
