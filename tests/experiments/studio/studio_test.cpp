@@ -307,7 +307,8 @@ TEST_F(StudioTest, FoldersOfADefinitionWhoseNameContinuesAreThatOnes) {
   fs::copy(folder_ / "mine.toml", folder_ / "mine-003.toml");
   const auto names = [&](const std::string& file, const char* kind) {
     std::vector<std::string> all;
-    for (const json& each : get("/sessions", "file=" + file)[kind]) {
+    const json view = get("/sessions", "file=" + file);
+    for (const json& each : view.at(kind)) {
       all.push_back(each["folder"]);
     }
     return all;
