@@ -18,7 +18,7 @@ constexpr double kCell = 0.5e-3;   // of charts [m]
 constexpr double kReach = 10e-3;   // of clearances [m]
 constexpr double kBelow = 2e-3;    // layers under the cavity's end [m]
 constexpr double kAbove = 45e-3;   // and above it: more than a temporal bone is thick [m]
-constexpr double kAround = 22e-3;  // columns on each side, at least [m]
+constexpr double kAround = 22e-3;  // columns on each side [m]
 
 [[noreturn]] void refuse(const bone::BoneModel& model, const char* key, const std::string& name) {
   std::vector<bool> there(model.structures.size(), false);
@@ -58,33 +58,8 @@ Eigen::Vector3d middle_of(const bone::BoneModel& model, const std::string& name)
   return sum / static_cast<double>(count);
 }
 
-/// How far columns are needed on each side, so that all plain bone in the cone has one [m].
-double half_width(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                  const Eigen::Vector3d& end_W, const Eigen::Matrix3d& axes,
-                  const CavityParameters& cavity) {
-  double most = 0.0;
-  std::size_t at = 0;
-  const geometry::VoxelGrid& grid = model.grid;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i, ++at) {
-        if (model.structures[model.labels[at]].name != bone::kPlainBone) {
-          continue;
-        }
-        const Eigen::Vector3d from_end = axes.transpose() * (X_WB * grid.centre(i, j, k) - end_W);
-        const double wide = cavity.radius + cavity.slope * std::max(0.0, -from_end.z());
-        if (from_end.head<2>().norm() <= wide) {
-          most = std::max(most, from_end.head<2>().cwiseAbs().maxCoeff());
-        }
-      }
-    }
-  }
-  return most > kAround ? kCell * std::ceil(most / kCell) : kAround;
-}
-
 /// Columns and layers about the cavity's end.
-DrillingChart empty_chart(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
-                          const Eigen::Vector3d& end_W, const CavityParameters& cavity) {
+DrillingChart empty_chart(const Eigen::Vector3d& end_W, const CavityParameters& cavity) {
   DrillingChart chart;
   chart.cell = kCell;
   const Eigen::Vector3d inward = cavity.inward.normalized();
@@ -93,10 +68,9 @@ DrillingChart empty_chart(const bone::BoneModel& model, const Eigen::Isometry3d&
   chart.axes.col(2) = inward;
   chart.axes.col(0) = (other - other.dot(inward) * inward).normalized();
   chart.axes.col(1) = inward.cross(chart.axes.col(0));
-  const double around = half_width(model, X_WB, end_W, chart.axes, cavity);
-  const auto across = static_cast<int>(std::lround(2.0 * around / kCell)) + 1;
+  const auto across = static_cast<int>(2.0 * kAround / kCell) + 1;
   chart.size = {across, across, static_cast<int>((kAbove + kBelow) / kCell) + 1};
-  chart.end = {around, around, kAbove};
+  chart.end = {kAround, kAround, kAbove};
   chart.corner = end_W - chart.axes * chart.end;
   chart.floor_radius = cavity.radius;
   chart.slope = cavity.slope;
@@ -237,7 +211,7 @@ DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& 
                          const CavityParameters& cavity) {
   check_structures(model, cavity);
   const Eigen::Vector3d end_B = middle_of(model, cavity.beside) + cavity.offset_B;
-  DrillingChart chart = empty_chart(model, X_WB, X_WB * end_B, cavity);
+  DrillingChart chart = empty_chart(X_WB * end_B, cavity);
   const Eigen::Isometry3d X_BW = X_WB.inverse();
   chart.surface.assign(chart.columns(), DrillingChart::kNone);
   chart.clearance.assign(chart.columns() * static_cast<std::size_t>(chart.size[2]),

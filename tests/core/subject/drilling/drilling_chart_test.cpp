@@ -5,8 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "core/subject/drilling/cavity_plan.h"
-
 namespace haptrial::subject {
 namespace {
 
@@ -43,43 +41,6 @@ TEST(DrillingChartTest, TheCavityIsAConeWhereNothingIsInTheWay) {
       EXPECT_NEAR(static_cast<double>(floor[chart.column(i, j)]), std::max(10e-3, cone), 0.51e-3);
     }
   }
-}
-
-/// A slab of bone 12 mm thick and 12 cm wide, with an incus below its middle.
-bone::BoneModel wide_slab() {
-  bone::BoneModel model;
-  model.grid = {{121, 121, 13}, {-0.06, -0.06, 0.0}, 1e-3};
-  model.structures = {{}, {"bone"}, {"incus"}};
-  model.labels.assign(model.grid.count(), 1);
-  model.labels[model.grid.index(60, 60, 0)] = 2;
-  return model;
-}
-
-TEST(DrillingChartTest, AWideConeIsPlannedAsFarAsItGoes) {
-  const bone::BoneModel model = wide_slab();
-  CavityParameters cavity;
-  cavity.inward = -Eigen::Vector3d::UnitZ();
-  cavity.offset_B.setZero();
-  cavity.slope = 3.0;
-  cavity.margin = 0.0;
-  const CavityPlan plan = plan_cavity(model, Eigen::Isometry3d::Identity(), cavity, 1e-4);
-  int wide = 0;
-  for (int k = 0; k < 13; ++k) {
-    for (int j = 0; j < 121; ++j) {
-      for (int i = 0; i < 121; ++i) {
-        const double aside = 1e-3 * std::hypot(i - 60, j - 60);
-        const bool planned = plan.parts[model.grid.index(i, j, k)] == PlanPart::kPlanned;
-        const double height = (aside - cavity.radius) / cavity.slope;  // of the cone's side here
-        if (1e-3 * k < height - 1e-6) {
-          EXPECT_FALSE(planned) << i << ' ' << j << ' ' << k;
-        } else if (aside > 22e-3 && 1e-3 * k > height + 1e-3) {
-          EXPECT_TRUE(planned) << i << ' ' << j << ' ' << k;
-          ++wide;
-        }
-      }
-    }
-  }
-  EXPECT_GT(wide, 5000);
 }
 
 TEST(DrillingChartTest, TheCavityEndsAtTheMarginOfAStructure) {
