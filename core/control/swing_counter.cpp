@@ -9,17 +9,14 @@ namespace haptrial::control {
 namespace {
 
 constexpr double kAlternates = 5.0;  // what is accounted for alternates above this [Hz]
-constexpr double kMemory = 0.1;      // of its size and its rate [s]
-// An answer turns as often as what it answers to, within these shares of the time between turns.
-constexpr double kAnswersFrom = 0.5;
-constexpr double kAnswersUntil = 1.5;
+constexpr double kPeakMemory = 0.1;  // [s]
 
 }  // namespace
 
 SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
                                        const Eigen::Vector3d& accounted, double dt) noexcept {
   time_ += dt;
-  follow_accounted(accounted, dt);
+  const double swing = least_swing_ + accounted_swing(accounted, dt);
   const bool first = !std::exchange(begun_, true);
   Train longest;
   for (int i = 0; i < 3; ++i) {
@@ -28,7 +25,7 @@ SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
     if (first) {
       axis.highest = axis.lowest = {rest, time_, time_};
     }
-    look_at(axis, rest, peak_[i]);
+    look_at(axis, rest, swing);
     const bool longer = axis.train.turns > longest.turns ||
                         (axis.train.turned && axis.train.turns == longest.turns);
     if (longer) {
@@ -38,25 +35,18 @@ SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
   return longest;
 }
 
-/// The time between turns is that between the zeros of a sine of the same mean squares
-/// (Rice 1944).
-void SwingCounter::follow_accounted(const Eigen::Vector3d& accounted, double dt) noexcept {
-  if (peak_.isZero(0.0) && slow_.isZero(0.0) && accounted.isZero(0.0)) {
-    return;  // as in most experiments
+/// Peak to peak.
+double SwingCounter::accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept {
+  if (peak_ == 0.0 && slow_.isZero(0.0) && accounted.isZero(0.0)) {
+    return 0.0;  // as in most experiments
   }
-  const Eigen::Vector3d before = alternating_;
   slow_ += std::min(1.0, 2.0 * std::numbers::pi * kAlternates * dt) * (accounted - slow_);
-  alternating_ = accounted - slow_;
-  const double fading = std::min(1.0, dt / kMemory);
-  peak_ = (peak_ - fading * peak_).cwiseMax(alternating_.cwiseAbs());
-  power_ += fading * (alternating_.squaredNorm() - power_);
-  slope_power_ += fading * ((alternating_ - before).squaredNorm() / (dt * dt) - slope_power_);
-  gap_ = slope_power_ > 0.0 ? std::numbers::pi * std::sqrt(power_ / slope_power_) : 0.0;
+  const double fading = peak_ - std::min(1.0, dt / kPeakMemory) * peak_;
+  peak_ = std::max(fading, (accounted - slow_).norm());
+  return 2.0 * peak_;
 }
 
-/// @param peak  of what is accounted for along this axis [N]
-void SwingCounter::look_at(Axis& axis, double force, double peak) const noexcept {
-  const double swing = least_swing_ + 2.0 * peak;
+void SwingCounter::look_at(Axis& axis, double force, double swing) const noexcept {
   axis.train.turned = false;
   if (force >= axis.highest.force) {
     axis.highest = {force, force > axis.highest.force ? time_ : axis.highest.from, time_};
@@ -66,10 +56,10 @@ void SwingCounter::look_at(Axis& axis, double force, double peak) const noexcept
   }
   if (axis.direction >= 0 && axis.highest.force - force >= swing) {
     axis.direction = -1;
-    note_turn(axis, axis.highest, peak);
+    note_turn(axis, axis.highest);
   } else if (axis.direction <= 0 && force - axis.lowest.force >= swing) {
     axis.direction = 1;
-    note_turn(axis, axis.lowest, peak);
+    note_turn(axis, axis.lowest);
   } else {
     if (time_ - axis.turned_at > 2.0 * longest_gap_) {  // the next turn may have been already
       axis.train = {};
@@ -79,19 +69,7 @@ void SwingCounter::look_at(Axis& axis, double force, double peak) const noexcept
   axis.highest = axis.lowest = {force, time_, time_};
 }
 
-/// Whether this turn is an answer to what is accounted for.
-bool SwingCounter::answers(Axis& axis, const Extreme& extreme, double peak) const noexcept {
-  const double at = 0.5 * (extreme.from + extreme.until);
-  const double gap = at - std::exchange(axis.last_at, at);
-  const double swing = std::abs(extreme.force - std::exchange(axis.last_from, extreme.force));
-  return gap >= kAnswersFrom * gap_ && gap <= kAnswersUntil * gap_ &&
-         swing < least_swing_ + peak_.norm() + peak;
-}
-
-void SwingCounter::note_turn(Axis& axis, const Extreme& extreme, double peak) const noexcept {
-  if (answers(axis, extreme, peak)) {
-    return;
-  }
+void SwingCounter::note_turn(Axis& axis, const Extreme& extreme) const noexcept {
   Train& train = axis.train;
   const double at = 0.5 * (extreme.from + extreme.until);
   train.gap = at - axis.turned_at;

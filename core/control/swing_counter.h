@@ -8,11 +8,9 @@ namespace haptrial::control {
 /// Counts the turning points of a force: a component that goes up and down by at least a given
 /// swing, with not too long between two turns, belongs to a train.
 ///
-/// A part F of the force may be accounted for, because it alternates by itself (a vibration, a
-/// relief under a moving hand). It is taken out, and along each axis the least swing grows by the
-/// swing of F there. A damper along a direction n answers with n (n · F) at most, whose component
-/// along an axis i is at most (|F| + |F_i|) / 2; so a swing of up to that size that turns about as
-/// often as F does is an answer to it and does not count, either.
+/// A part of the force may be accounted for, because it alternates by itself (a vibration, a relief
+/// under a moving hand). It is taken out, and the least swing grows by the swing of that part,
+/// since what answers to it is at most about as large.
 ///
 /// Servo thread: no allocation, lock, I/O or throw.
 class SwingCounter {
@@ -50,28 +48,19 @@ class SwingCounter {
     int direction{0};         // +1 rising, -1 falling; 0: not known yet
     double turned_at{0.0};    // of the last turn, the middle of its extreme [s]
     double turned_from{0.0};  // the force there [N]
-    double last_at{0.0};      // the same of the last turn that counts or is an answer [s]
-    double last_from{0.0};    // [N]
     Train train{};
   };
-  void follow_accounted(const Eigen::Vector3d& accounted, double dt) noexcept;
-  void look_at(Axis& axis, double force, double peak) const noexcept;
-  bool answers(Axis& axis, const Extreme& extreme, double peak) const noexcept;
-  void note_turn(Axis& axis, const Extreme& extreme, double peak) const noexcept;
+  double accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept;
+  void look_at(Axis& axis, double force, double swing) const noexcept;
+  void note_turn(Axis& axis, const Extreme& extreme) const noexcept;
 
   double least_swing_;
   double longest_gap_;
   double time_{0.0};  // [s]
   bool begun_{false};
   std::array<Axis, 3> axes_;
-
-  // What is accounted for.
-  Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};         // [N]
-  Eigen::Vector3d alternating_{Eigen::Vector3d::Zero()};  // the rest of it, F [N]
-  Eigen::Vector3d peak_{Eigen::Vector3d::Zero()};  // of F along each axis, falling slowly [N]
-  double power_{0.0};                              // mean square of F [N²]
-  double slope_power_{0.0};                        // and of its rate [N²/s²]
-  double gap_{0.0};                                // between two turns of F [s]
+  Eigen::Vector3d slow_{Eigen::Vector3d::Zero()};  // of what is accounted for [N]
+  double peak_{0.0};                               // of the rest of it, falling slowly [N]
 };
 
 }  // namespace haptrial::control

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -75,46 +74,6 @@ TEST(SwingCounterTest, AStimulusAccountsForItselfAndForAnAnswerOfItsSize) {
   EXPECT_LE(longest(damped, vibration).turns, 1) << "a damper answers to it";
   const auto with_oscillation = [&](double t) { return vibration(t) + 4.0 * sine(45.0, t); };
   EXPECT_GT(longest(with_oscillation, vibration).turns, 50) << "and hides no larger one";
-}
-
-/// A vibration of 3 N at 100 Hz along x, and along y an oscillation of 50 Hz: of 3 N, of 1 N.
-TEST(SwingCounterTest, AStimulusHidesNoOscillationAcrossIt) {
-  for (const double amplitude : {3.0, 1.0}) {
-    SwingCounter counter(1.0, 0.06);
-    SwingCounter::Train train;
-    for (int i = 0; i < 1000; ++i) {
-      const double t = kTick * i;
-      const Vector3d vibration(3.0 * sine(100.0, t), 0.0, 0.0);
-      train =
-          counter.look(vibration + Vector3d(0.0, amplitude * sine(50.0, t), 0.0), vibration, kTick);
-    }
-    EXPECT_GT(train.turns, 50) << amplitude;
-    EXPECT_NEAR(train.gap, 0.01, 1.5 * kTick);
-  }
-}
-
-/// A mass on a damper that is not along the vibration: its force has a component across that.
-TEST(SwingCounterTest, WhatADamperOfAnyDirectionAnswersIsNoOscillation) {
-  for (const double degrees : {0.0, 20.0, 45.0, 70.0, 120.0}) {
-    for (const double hertz : {20.0, 60.0, 150.0}) {
-      for (const double damping : {10.0, 60.0, 300.0}) {
-        const double angle = degrees * std::numbers::pi / 180.0;
-        const Vector3d n(std::cos(angle), std::sin(angle), 0.0);
-        constexpr double kMass = 0.3;  // [kg]
-        SwingCounter counter(1.0, 0.06);
-        double speed = 0.0;  // along n
-        int longest = 0;
-        for (int i = 0; i < 2000; ++i) {
-          const Vector3d vibration(4.0 * sine(hertz, kTick * i), 0.0, 0.0);
-          const double share = std::exp(-damping / kMass * kTick);
-          speed = share * speed + (1.0 - share) * n.dot(vibration) / damping;
-          const Vector3d answer = -damping * speed * n;
-          longest = std::max(longest, counter.look(vibration + answer, vibration, kTick).turns);
-        }
-        EXPECT_LE(longest, 1) << degrees << "°, " << hertz << " Hz, " << damping << " N·s/m";
-      }
-    }
-  }
 }
 
 TEST(SwingCounterTest, ATickDoesNotAllocate) {
