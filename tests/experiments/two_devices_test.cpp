@@ -337,7 +337,8 @@ class TwoDevicesStudyTest : public testing::Test {
   TwoDevicesStudyTest() {
     test::write_text(folder_ / "two.toml",
                      "[experiment]\nprotocol = \"trials\"\nname = \"two\"\n"
-                     "[design]\nparticipants = 4\n[devices.finger]\n[devices.thumb]\n"
+                     "[design]\nparticipants = 4\n[devices.finger]\nstart = [-0.01, 0.0, 0.0]\n"
+                     "[devices.thumb]\nstart = [0.01, 0.0, 0.0]\n"
                      "[[blocks]]\nname = \"one\"\ntrials = 1\n"
                      "[[stages]]\nname = \"wait\"\nuntil = { time = 0.05 }\n");
     experiment_ = load_experiment(folder_ / "two.toml");
