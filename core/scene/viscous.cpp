@@ -1,6 +1,7 @@
 #include "core/scene/viscous.h"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "core/scene/require.h"
@@ -11,10 +12,9 @@ namespace {
 using Eigen::Matrix3d;
 
 double spectral_norm(const Matrix3d& matrix) {
-  return std::sqrt(
-      Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix.transpose() * matrix, Eigen::EigenvaluesOnly)
-          .eigenvalues()
-          .maxCoeff());
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> squares(matrix.transpose() * matrix,
+                                                        Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(squares.eigenvalues().maxCoeff(), 0.0));
 }
 
 }  // namespace
@@ -26,10 +26,11 @@ StiffnessBound MatrixViscousParameters::bound() const {
   const Eigen::SelfAdjointEigenSolver<Matrix3d> along(0.5 * (matrix + matrix.transpose()));
   const double largest = along.eigenvalues().maxCoeff();
   const bool takes = largest <= rounding;
+  const auto cleaned = [&](double value) { return std::abs(value) <= rounding ? 0.0 : value; };
   const Matrix3d driving = along.eigenvectors() * along.eigenvalues().cwiseMax(0.0).asDiagonal() *
                            along.eigenvectors().transpose();
-  return {takes && (symmetric || std::isinf(velocity_filter)), 0.0, spectral_norm(matrix - driving),
-          std::abs(largest) <= rounding ? 0.0 : largest};
+  return {takes && (symmetric || std::isinf(velocity_filter)), 0.0,
+          cleaned(spectral_norm(matrix - driving)), cleaned(largest)};
 }
 
 Viscous::Viscous(const ViscousParameters& p, const Setting& setting)

@@ -17,4 +17,16 @@ void check(const TouchOptions& options) {
           "friction: static must be at least dynamic, and dynamic at least 0");
 }
 
+void bound_change(const Eigen::Vector3d& before, double bent, double period,
+                  contact::Contact& contact) noexcept {
+  constexpr double kFastest = 500.0;  // [N/s]
+  const Eigen::Vector3d change = contact.force - before;
+  const double most = bent + kFastest * period;
+  if (const double size = change.norm(); size > most) {
+    contact.force = before + most / size * change;
+    const bool lost = contact.state == contact::ContactState::kFree;
+    contact.state = lost ? contact::ContactState::kStick : contact.state;
+  }
+}
+
 }  // namespace haptrial::deformable

@@ -19,6 +19,14 @@ struct TouchOptions {
 /// @throws std::invalid_argument naming the option that breaks its bound.
 void check(const TouchOptions& options);
 
+/// Limits the change of a force in a tick to what the hand makes by bending the ball's spring, and
+/// to 500 N/s: a ball of the usual spring that moves by itself at 0.1 m/s. A change beyond that
+/// comes from steps that fail. A force that is lost goes by as much, as if the contact went on.
+/// @param before  a tick ago [N]  @param bent  by the hand since then >= 0 [N]
+/// @param period  > 0 [s]
+void bound_change(const Eigen::Vector3d& before, double bent, double period,
+                  contact::Contact& contact) noexcept;
+
 /// A force on one vertex of a body.
 struct VertexForce {
   std::int32_t vertex{};                           // of the HapticMesh

@@ -14,7 +14,6 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr std::uint64_t kTicksOfPicture = 8;
-constexpr double kFastest = 200.0;  // growth of a force while the hand rests [N/s]
 constexpr double kFar = 2.0;  // of the body's diagonal: no vertex of a whole body gets that far
 
 TouchOptions felt_by(const MovingBody& body, TouchOptions options) {
@@ -79,20 +78,26 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
     return contact_;
   }
   const Vector3d way = tool - tool_;
-  const double before = contact_.force.norm();
+  const Vector3d before = contact_.force;
   account_.book(contact_.force, way, period_);
   inverted_steps_ = motion_->inverted_steps();
   advance(tool);
   if (!together()) {
     ++counts_.flown_apart;
+    const EnergyAccount account = account_;  // of the force that is taken off from here on
     start(tool);
+    account_ = account;
+    inverted_steps_ = motion_->inverted_steps();
   }
   note(tool);
+  if (!grasps()) {
+    bound_change(before, options_.stiffness * way.norm(), period_, contact_);
+  }
   if (contact_.state != ContactState::kFree) {
     ++counts_.contact;
     counts_.crowded += ball_.crowded() ? 1 : 0;
     counts_.unsettled += ball_.solved() ? 0 : 1;
-    limit(before, way.norm());
+    limit();
   } else {
     account_.open();
   }
@@ -206,10 +211,8 @@ void MovingTouch::keep_forces() noexcept {
 }
 
 /// A force that would turn a tetrahedron inside out is cut to what it was before, and one that
-/// might give out more energy than there is, or grows faster than the hand bends the ball's spring,
-/// to what may be given.
-/// @param before  size of the force a tick ago [N]  @param way  of the hand since then [m]
-void MovingTouch::limit(double before, double way) noexcept {
+/// might give out more energy than there is to what may be given.
+void MovingTouch::limit() noexcept {
   const double size = contact_.force.norm();
   if (motion_->inverted_steps() == inverted_steps_) {
     upright_ = size;
@@ -217,9 +220,7 @@ void MovingTouch::limit(double before, double way) noexcept {
     ++counts_.inverted;
     scale(size > upright_ ? upright_ / size : 1.0);
   }
-  const double most = grasps() ? size : before + options_.stiffness * way + kFastest * period_;
-  const double share =
-      std::min(account_.share(contact_.force.norm()), most / std::max(most, contact_.force.norm()));
+  const double share = account_.share(contact_.force.norm());
   counts_.limited += share < 1.0 ? 1 : 0;
   scale(share);
 }

@@ -19,9 +19,9 @@ namespace haptrial::deformable {
 ///
 /// On each tick a body of springs makes several explicit steps, one of elements an implicit one,
 /// while the hand goes on to the tool; what is felt is the mean force of these steps. An energy
-/// account (energy_account.h) keeps it passive, and the force of a ball grows no faster than its
-/// spring is bent, but for 200 N/s: what grows faster is no wave in a body, its steps fail. A tick
-/// is a function of the tool's places alone, to the bit on every instruction set.
+/// account (energy_account.h) keeps it passive, and bound_change() takes care that a body whose
+/// steps fail neither strikes the hand nor lets it fall. A tick is a function of the tool's places
+/// alone, to the bit on every instruction set.
 ///
 /// A point, and any ball below smallest_ball(), is felt as a ball of that radius. A ball that
 /// begins in the surface grows there from what has room; one whose centre is inside touches nothing
@@ -60,7 +60,7 @@ class MovingTouch final : public BodyTouch {
   void keep_forces() noexcept;
   void note_grip(const Eigen::Vector3d& tool) noexcept;
   void note(const Eigen::Vector3d& tool) noexcept;
-  void limit(double before, double way) noexcept;
+  void limit() noexcept;
   void scale(double share) noexcept;
   bool together() const noexcept;
 

@@ -73,8 +73,10 @@ void TwoRateTouch::start(const Vector3d& tool) noexcept {
 
 const contact::Contact& TwoRateTouch::tick(const Vector3d& tool, double) noexcept {
   const bool finite = tool.allFinite();
+  const Vector3d before = contact_.force;
+  const double way = finite ? (tool - tool_).norm() : 0.0;
   if (finite) {
-    account_.book(contact_.force, tool - tool_, period_);
+    account_.book(before, tool - tool_, period_);
     tool_ = tool;
   }
   hand_over(tool_);
@@ -83,8 +85,14 @@ const contact::Contact& TwoRateTouch::tick(const Vector3d& tool, double) noexcep
   force_count_ = 0;
   const double age =
       std::min(static_cast<double>(tick_ - known_at_), kMostAge * rates_.window) * period_;
-  if (finite && surface_ != nullptr && local_.tick(*surface_, tool, age)) {
+  const bool touches = finite && surface_ != nullptr && local_.tick(*surface_, tool, age);
+  if (touches) {
     note();
+  }
+  if (finite) {
+    bound_change(before, options_.stiffness * way, period_, contact_);
+  }
+  if (contact_.state != ContactState::kFree) {
     limit();
   } else if (finite) {
     account_.open();
@@ -171,7 +179,7 @@ void TwoRateTouch::note() noexcept {
 
 void TwoRateTouch::limit() noexcept {
   const double size = contact_.force.norm();
-  if (size > surface_->most_force) {
+  if (surface_ != nullptr && size > surface_->most_force) {
     contact_.force *= surface_->most_force / size;
   }
   const double share = account_.share(contact_.force.norm());

@@ -123,11 +123,11 @@ TEST(TutoredPassTest, ARecordedRunWaitsWhileThePauseIsAskedForInAnyProtocol) {
   double before = 1e-3;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     const double step = rows[i].time - rows[i - 1].time;
-    const bool waits = (i > 200 && i <= 351) || (i > 450 && i <= 501);
+    const bool waits = (i > 201 && i <= 351) || (i > 451 && i <= 501);
     ASSERT_NEAR(step - before, 0.0, 1e-3 / 80.0 + 1e-9) << i;
     ASSERT_FALSE(waits ? step > before + 1e-12 : step < before - 1e-12) << i;
     before = step;
-    if (i > 281 && i <= 350) {
+    if (i > 282 && i <= 351) {
       ASSERT_NEAR(step, 0.0, 1e-12) << i;
     }
   }

@@ -168,7 +168,7 @@ TEST_P(CalmHandsTest, NothingThatAHandDoesIsTakenForAFault) {
 }
 
 /// Ridges so fine that no hand damps its swing in a groove: their curvature of 31,600 1/m times a
-/// press of 3 N is 95 N/mm. Hands that press and rest are not left to it.
+/// press of 3 N is 95 N/mm. Hands that press and rest are calmed, or their pass ends.
 TEST(GrooveTest, AHandThatSwingsInAGrooveIsSeen) {
   scene::GratingParameters ridges{"wall"};
   ridges.amplitude = 0.0002;
@@ -189,7 +189,8 @@ TEST(GrooveTest, AHandThatSwingsInAGrooveIsSeen) {
       const auto train = swings.look(devices.forces()[0], Vector3d::Zero(), 1.0 / kRate);
       longest = std::max(longest, train.lasted);
     }
-    EXPECT_LT(longest, 0.3) << mass << " kg, " << device::describe(devices.fault());
+    const bool ended = devices.fault() != device::Fault::kNone;
+    EXPECT_TRUE(ended || longest < 0.3) << mass << " kg swings for " << longest << " s";
   }
 }
 
