@@ -27,8 +27,7 @@ double t_critical(double probability, double df) {
 
 double t_curve(const TPlan& plan, double n, double delta) {
   const double df = t_df(plan, n);
-  const double cases =
-      plan.design == TDesign::kTwoSample ? n * plan.ratio / (1.0 + plan.ratio) : n;
+  const double cases = plan.design == TDesign::kTwoSample ? n * plan.ratio / (1.0 + plan.ratio) : n;
   const double noncentrality = delta * std::sqrt(cases);
   const double critical = t_critical(plan.one_tailed ? plan.alpha : 0.5 * plan.alpha, df);
   const double power = noncentral_t(critical, df, noncentrality).upper;

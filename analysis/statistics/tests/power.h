@@ -5,8 +5,8 @@
 
 namespace haptrial::analysis {
 
-/// A t-test that is planned. Of two samples `n` is the size of the first; of pairs their number, and
-/// `delta` is the mean difference by the standard deviation of the differences.
+/// A t-test that is planned. Of two samples `n` is the size of the first; of pairs their number,
+/// and `delta` is the mean difference by the standard deviation of the differences.
 enum class TDesign { kOneSample, kTwoSample, kPaired };
 
 struct TPlan {
