@@ -83,9 +83,18 @@ std::string sides_of(const SideTest& test) {
                                             : text_of(test.sides);
 }
 
+/// Whether one reason leaves nothing of a test, so that it need not be said of each number.
+bool is_undefined(const SideTest& test) {
+  return !test.t && !test.ranks && test.ranks.because() == test.t.because();
+}
+
 std::vector<std::string> lines_of(const TestFamily& family) {
   std::vector<std::string> lines{capitalized(family.name) + ":"};
   for (const SideTest& test : family.tests) {
+    if (is_undefined(test)) {
+      lines.push_back(fmt::format("  {}: {}", sides_of(test), side_result(test)));
+      continue;
+    }
     lines.push_back(fmt::format("  {}: {}; {}{}", sides_of(test), side_result(test),
                                 test.paired ? "d_z" : "d",
                                 (test.size ? " = " : " ") + effect(test.size)));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/statistics/base/p_adjust.h"
@@ -292,6 +293,11 @@ TEST(DesignTests, LevelsThatDifferInOtherFactorsAreNotCompared) {
   EXPECT_THAT(levels.t.because(), HasSubstr("'fast' and 'slow' differ in other factors"));
   EXPECT_THAT(levels.bayes_factor.because(), HasSubstr("differ in other factors"));
   EXPECT_TRUE(tests.planned.tests[1].t);
+  const auto lines = design_lines(design_table(made.observations, {"speed", "load"}), tests);
+  EXPECT_EQ(
+      std::ranges::count_if(
+          lines, [](const std::string& line) { return line.find("differ in other") != line.npos; }),
+      1);
 }
 
 TEST(DesignLines, TheRuleOfAStudyDecidesItsTest) {
