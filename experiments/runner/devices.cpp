@@ -189,11 +189,11 @@ void check_reach(const device::DeviceInfo& info, const protocols::Definition& d)
 void check_pointer(const DeviceChoice& choice, const protocols::DeviceArm& arm,
                    const std::string& file_name) {
   if (choice.name == kMouse || choice.name == kGamepad) {
-    throw InputError(
-        fmt::format("{}: device {} would be driven by --device {}, which drives the first device "
-                    "alone; give each "
-                    "device a --device of its own",
-                    file_name, arm.name, choice.name));
+    throw InputError(fmt::format(
+        "{}: {} would be driven by --device {}, which drives the first device alone; give each "
+        "device a --device of its own, as --device {} --device virtual",
+        file_name, arm.name.empty() ? "the second device" : "device " + arm.name, choice.name,
+        choice.name));
   }
 }
 
