@@ -16,6 +16,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/bone_drilling/live_tuning.h"
+#include "protocols/bone_drilling/replay_difference.h"
 #include "protocols/bone_drilling/replayed_handpiece.h"
 
 namespace haptrial::protocols {
@@ -83,68 +84,6 @@ std::vector<bone::RecordedSplit> splits_of(std::span<const record::SplitRow> row
     splits.back().seeds.emplace_back(row.voxel[0], row.voxel[1], row.voxel[2]);
   }
   return splits;
-}
-
-std::string words(const record::RemovalRow& row) {
-  return fmt::format("({}, {}, {}) of piece {} with label {}{}", row.voxel[0], row.voxel[1],
-                     row.voxel[2], row.piece, row.label, row.cut ? ", cut" : "");
-}
-
-std::string words(const bone::EmptiedIn& gone) {
-  return fmt::format("({}, {}, {}) of piece {} with label {}{}", gone.voxel.x(), gone.voxel.y(),
-                     gone.voxel.z(), gone.piece, gone.label, gone.by_cut ? ", cut" : "");
-}
-
-/// Empty where the voxels of a tick are those of the record.
-std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
-                       std::span<const bone::EmptiedIn> emptied) {
-  for (std::size_t i = 0; i < std::max(recorded.size(), emptied.size()); ++i) {
-    const std::string file = i < recorded.size() ? words(recorded[i]) : "no further voxel";
-    const std::string here = i < emptied.size() ? words(emptied[i]) : "none";
-    if (file != here) {
-      return fmt::format("on tick {} the record has {} emptied, and the simulation {}", sequence,
-                         file, here);
-    }
-  }
-  return "";
-}
-
-/// Empty where what tore on a tick is what tore in the record, to the bit.
-std::string difference(std::uint64_t sequence, std::span<const record::TearRow> recorded,
-                       std::span<const bone::Tear> torn) {
-  const auto same = [](const record::TearRow& a, const bone::Tear& b) {
-    return a.label == b.label && a.by_suction == b.by_suction && a.force == b.force &&
-           a.depth == b.depth && a.place == b.place_B;
-  };
-  return std::equal(recorded.begin(), recorded.end(), torn.begin(), torn.end(), same)
-             ? ""
-             : fmt::format(
-                   "on tick {} the record has {} tears of soft tissue, and the simulation "
-                   "{}, or others",
-                   sequence, recorded.size(), torn.size());
-}
-
-/// Empty where the pieces of a tick's rows lie as in the record, to the bit.
-std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
-                       const bone::Simulator& simulator) {
-  for (const record::PieceRow& row : recorded) {
-    const bool known = row.piece >= 0 && row.piece < simulator.world().pieces();
-    const record::PieceRow now =
-        known ? piece_row(simulator, sequence, row.piece, 0) : record::PieceRow{};
-    if (!known || now.shift != row.shift || now.turn != row.turn) {
-      return fmt::format("on tick {} piece {} does not lie as in the record", sequence, row.piece);
-    }
-  }
-  return "";
-}
-
-/// Likewise of a screw whose driving ended in the record. @param ended  null: none did
-std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
-                       const bone::Screw* ended) {
-  const bool same = recorded.empty() || (ended != nullptr && recorded.size() == 1 &&
-                                         recorded.front().hole == ended->place.hole &&
-                                         recorded.front().purchase == ended->purchase);
-  return same ? "" : fmt::format("on tick {} the screws are not those of the record", sequence);
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ TEST(DeviceSetTest, ATickWithPartsDoesNotAllocate) {
 }
 
 /// A part was driven by one law for three seconds, and this came of it.
-struct Outcome {
+struct SetOutcome {
   double train;  // longest of turns [s]
   device::Fault fault;
 };
@@ -114,7 +114,7 @@ struct Outcome {
 constexpr double kHandle = 0.05;  // of the bare part, at the fingers [kg]
 
 /// @param hand  mass at the fingers; 0: nobody holds it [kg]
-Outcome outcome_of(double hand, const Law& law, Part part) {
+SetOutcome outcome_of(double hand, const Law& law, Part part) {
   const bool turns = part == Part::kRotation;
   const double mass = kHandle + hand;
   TurningHandle handle(mass, mass);
@@ -169,7 +169,7 @@ TEST(DeviceSetTest, NoHandleOfAnyInertiaOscillates) {
         }
         SCOPED_TRACE(testing::Message()
                      << each.name << ", " << device::part_word(part) << ", " << hand << " kg");
-        const Outcome outcome = outcome_of(hand, law_of(each, part, true), part);
+        const SetOutcome outcome = outcome_of(hand, law_of(each, part, true), part);
         EXPECT_LE(outcome.train, 0.2);
         EXPECT_EQ(outcome.fault, device::Fault::kNone) << device::describe(outcome.fault);
       }
@@ -179,7 +179,7 @@ TEST(DeviceSetTest, NoHandleOfAnyInertiaOscillates) {
 
 TEST(DeviceSetTest, WhatDoesNotGiveWayIsEndedAsAnOscillation) {
   for (const Part part : {Part::kRotation, Part::kGrip}) {
-    const Outcome outcome = outcome_of(0.0, law_of(kFirm[3], part, false), part);
+    const SetOutcome outcome = outcome_of(0.0, law_of(kFirm[3], part, false), part);
     EXPECT_EQ(outcome.fault, device::Fault::kOscillation) << device::describe(outcome.fault);
   }
 }

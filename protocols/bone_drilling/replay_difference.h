@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/fragment_rows.h"
+#include "core/bone/record/tear_row.h"
+#include "core/bone/simulator/simulator.h"
+
+// A tick of a drilling that is simulated again beside the rows that the session wrote on it. Each
+// function gives a sentence, which is empty where both are the same.
+namespace haptrial::protocols {
+
+/// The voxels that a tick emptied, in any order: while a part comes off, a session looks at it
+/// after the bone that it leaves, and the search for parts came to it when its thread had time.
+std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
+                       std::span<const bone::EmptiedIn> emptied);
+
+/// What tore on a tick, to the bit.
+std::string difference(std::uint64_t sequence, std::span<const record::TearRow> recorded,
+                       std::span<const bone::Tear> torn);
+
+/// Where the pieces of a tick's rows lie, to the bit.
+std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
+                       const bone::Simulator& simulator);
+
+/// The screw whose driving ended on a tick. @param ended  null where none did
+std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
+                       const bone::Screw* ended);
+
+}  // namespace haptrial::protocols
