@@ -145,7 +145,10 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
       changes > 0) {
     logs_.tunings.push({sequence_, changes});
   }
+  const int tool_before = simulator_.output().tool;
+  const bone::HandMode mode_before = simulator_.output().mode;
   const bone::SimulatorOutput& done = simulator_.tick(input);
+  const bool other_touch = !first_ && (done.tool != tool_before || done.mode != mode_before);
   companions_.after_tick(simulator_, dt);
   if (nerves_ != nullptr) {
     logs_.set_nerves(nerves_->step(tool_at_nerves(simulator_, input)));
@@ -181,6 +184,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   out.force = control::saturate(wanted, out.most);
   out.intent.push = reading.shares.stiffness * done.drag + shake;
   out.intent.stimulus = shake;
+  out.goes_over = other_touch;
   out.saturated = wanted.norm() > out.most;
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(simulator_, input);
@@ -199,6 +203,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
         readings[1].shares.stiffness * (done.tube.force + done.tube.shaft - done.pushed);
     second_.most = parameters_.second->force_limit;
     second_.force = control::saturate(on_tube, second_.most);
+    second_.goes_over = other_touch;
     rows_.log_second(input.tube);
   }
   rows_.log_tool(done.removed + done.cut, done.force);

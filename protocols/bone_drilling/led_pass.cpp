@@ -21,6 +21,7 @@ LedPass::LedPass(const Parts& parts)
       input_(parts.parameters),
       rows_(parts.simulator, parts.logs, parts.rate),
       touch_(parts.simulator),
+      tool_(parts.simulator.output().tool),
       split_(parts.shared.step_is_done() ? Split::kDone : Split::kNone) {
   p_.shared.set_step_is_done(false);
   if (p_.real) {
@@ -160,6 +161,8 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   out.force = control::saturate(wanted, out.most);
   out.intent.push = share * felt.drag + shake;
   out.intent.stimulus = shake;
+  const int tool_before = std::exchange(tool_, p_.simulator.output().tool);
+  out.goes_over = waited_ > 0 || tool_ != tool_before;
   out.saturated = wanted.norm() > out.most;
   out.stage = record::Stage::kRun;
   bone::DrillingView seen = view_of(p_.simulator, own);
@@ -186,12 +189,13 @@ PassOutput LedPass::tick(const Readings& readings, double /*dt*/) noexcept {
     if (++waited_ > kStillFelt) {
       static_cast<Drive&>(out_) = {};
     }
+    out_.goes_over = waited_ == kStillFelt + 1;
   } else {
-    waited_ = 0;
     if (p_.nerves != nullptr) {
       p_.logs.set_nerves(p_.nerves->step(tool_at_nerves(p_.simulator, last_)));
     }
     out_ = output(readings);
+    waited_ = 0;
   }
   out_.shown.tool = readings[0].tool.position;
   ++sequence_;

@@ -96,6 +96,9 @@ void DeviceSet::limit(std::size_t arm, const Drive& drive, double dt) noexcept {
   intent.ended = intent.ended.cwiseProduct(axes);
   const double most = std::max(std::min(envelope.limits().max_force, drive.most), force.norm());
   const Eigen::Vector3d calm = control::saturate(force + guards_[arm].calming(), most);
+  if (drive.goes_over) {
+    envelope.go_over();
+  }
   forces_[arm] = envelope.limit(calm, dt, intent);
   stimuli_[arm] = intent.stimulus;
 }

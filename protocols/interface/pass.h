@@ -38,6 +38,8 @@ struct Drive {
   device::ForceIntent intent;                      // of the force
   /// Limit of the protocol's own: not even with the guard's damper is the force larger [N]
   double most{std::numeric_limits<double>::infinity()};
+  /// The force goes over from one law to another on this tick: what changes by that fades.
+  bool goes_over{false};
 };
 
 /// Output of one tick of a pass.

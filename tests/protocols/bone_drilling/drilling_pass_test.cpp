@@ -262,6 +262,41 @@ TEST(DrillingPassTest, AFaultBringsTheForceToZeroAndEveryTickIsLoggedAllTheSame)
   }
 }
 
+/// Another tool, a view that is moved and a piece that is carried: the resting hand loses what it
+/// leans on by degrees.
+TEST(DrillingPassTest, WhatAHandLeansOnFadesIfItTakesAnotherToolOrMovesTheView) {
+  for (const std::uint32_t button : {2u, 4u, 64u}) {
+    SCOPED_TRACE(button);
+    Workshop shop;
+    test::ScriptedDevice device;
+    constexpr std::size_t kChange = 1500;
+    constexpr std::size_t kTicks = 1600;
+    device.on_read = [&](std::size_t tick, device::DeviceReading& reading) {
+      const double depth = std::min(0.0015, 2e-6 * static_cast<double>(tick));
+      reading.tool.position += Vector3d(0.005, 0.0052 - depth, 0.0);
+      reading.buttons = tick >= kChange ? button : 0u;
+      return true;
+    };
+    device::EnvelopeLimits limits;
+    limits.ramp_in = 0.0;
+    SessionTask::Log log;
+    SessionTask task(device, limits, log, {}, SessionTask::Leave::kNever, &shop.logs);
+    task.start(*shop.pass, 0);
+    for (std::uint64_t i = 0; i < kTicks; ++i) {
+      task.tick({i, static_cast<std::int64_t>(i) * 1'000'000, kDt});
+    }
+    ASSERT_FALSE(task.idle());
+    const Vector3d leant = device.written[kChange - 1];
+    ASSERT_GT(leant.norm(), 0.4);
+    for (std::size_t i = kChange; i < kTicks; ++i) {
+      const double u =
+          std::min(1.0, static_cast<double>(i + 1 - kChange) * kDt / limits.change_time);
+      const double left = 1.0 - u * u * (3.0 - 2.0 * u);
+      ASSERT_LT((device.written[i] - left * leant).norm(), 1e-6) << i;
+    }
+  }
+}
+
 TEST(DrillingPassTest, ToolsChangeByButtonAndOnlyWhenItGoesDown) {
   Workshop shop;
   const Vector3d away(0.0, 0.02, 0.0);

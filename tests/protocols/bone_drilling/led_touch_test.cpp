@@ -222,6 +222,22 @@ TEST_F(LedTouchTest, ABurrInBoneShakesThisHandToo) {
   EXPECT_GT(most, 0.01);
 }
 
+TEST_F(LedTouchTest, WhatIsFeltGoesOverIfTheOtherHandTakesAnotherTool) {
+  take_tool(0);
+  const Vector3d away(0.0, 0.01, 0.0);
+  Vector3d p(0.003, 0.004, 0.0);
+  for (; p.y() > kTop + 1.2e-3; p.y() -= 5e-6) {
+    tick(test::at(away), test::at(p));
+    ASSERT_FALSE(led_out_.goes_over);
+  }
+  EXPECT_GT(led_out_.force.norm(), 0.5);
+  tick(test::at(away, kNext), test::at(p));
+  EXPECT_TRUE(led_out_.goes_over);
+  EXPECT_EQ(led_out_.force.norm(), 0.0);
+  tick(test::at(away), test::at(p));
+  EXPECT_FALSE(led_out_.goes_over);
+}
+
 TEST_F(LedTouchTest, ATickDoesNotAllocate) {
   take_tool(0);
   const test::AllocationGuard guard;
