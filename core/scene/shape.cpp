@@ -22,8 +22,46 @@ SurfaceDistance of_sphere(const Vector3d& from_centre, double radius) noexcept {
   return {r - radius, r > 0.0 ? Vector3d(from_centre / r) : Vector3d::UnitY()};
 }
 
+/// Width over which gradients turn inside a shape, and the sum of two depths up to which they do.
+struct Rounding {
+  double width{0.0};   // [m]
+  double depths{0.0};  // [m]
+};
+
+/// The greater of two distances inside, whose gradient turns from one to the other where they
+/// differ by less than a width w (a polynomial smooth maximum). Of the sum s of both depths,
+///
+///     w = W u / (W S + u),  u = s (S - s)
+///
+/// so that the surface stays where it is, and so does the middle.
+SurfaceDistance joined(const SurfaceDistance& one, const SurfaceDistance& other,
+                       const Rounding& rounding) noexcept {
+  const bool first = one.distance >= other.distance;
+  const SurfaceDistance& near = first ? one : other;
+  const SurfaceDistance& far = first ? other : one;
+  const double apart = near.distance - far.distance;
+  const double depths = -near.distance - far.distance;
+  if (!(apart < rounding.width && depths < rounding.depths)) {
+    return near;
+  }
+  const double u = depths * (rounding.depths - depths);
+  const double whole = rounding.width * rounding.depths + u;
+  const double width = rounding.width * u / whole;
+  if (!(apart < width)) {
+    return near;
+  }
+  const double share = 0.5 * (1.0 - apart / width);
+  const double widens = rounding.width * rounding.width * rounding.depths *
+                        (rounding.depths - 2.0 * depths) / (whole * whole);
+  const double lost = share * (1.0 - share) * widens;
+  const Vector3d gradient =
+      (1.0 - share - lost) * near.slope * near.normal + (share - lost) * far.slope * far.normal;
+  const double slope = gradient.norm();
+  return {near.distance + share * share * width, gradient / slope, slope};
+}
+
 /// @param p  from the centre, along the box's own axes
-SurfaceDistance of_box(const Vector3d& p, const Vector3d& half) noexcept {
+SurfaceDistance of_box(const Vector3d& p, const Vector3d& half, const Rounding& rounding) noexcept {
   const Vector3d sign = p.unaryExpr([](double x) { return x < 0.0 ? -1.0 : 1.0; });
   const Vector3d beyond = p.cwiseAbs() - half;
   const Vector3d out = beyond.cwiseMax(0.0);
@@ -32,13 +70,14 @@ SurfaceDistance of_box(const Vector3d& p, const Vector3d& half) noexcept {
     const double distance = std::sqrt(square);
     return {distance, out.cwiseProduct(sign) / distance};
   }
-  Eigen::Index face = 0;
-  const double distance = beyond.maxCoeff(&face);
-  return {distance, sign[face] * Vector3d::Unit(face)};
+  const auto face = [&](Eigen::Index axis) {
+    return SurfaceDistance{beyond[axis], sign[axis] * Vector3d::Unit(axis)};
+  };
+  return joined(joined(face(0), face(1), rounding), face(2), rounding);
 }
 
 SurfaceDistance of_cylinder(const Vector3d& p, const Vector3d& axis, double radius,
-                            double half_length) noexcept {
+                            double half_length, const Rounding& rounding) noexcept {
   const double along = axis.dot(p);
   const Vector3d aside = p - along * axis;
   const double r = aside.norm();
@@ -50,7 +89,12 @@ SurfaceDistance of_cylinder(const Vector3d& p, const Vector3d& axis, double radi
     const double distance = std::hypot(round, flat);
     return {distance, (round * outward + flat * endward) / distance};
   }
-  return round > flat ? SurfaceDistance{round, outward} : SurfaceDistance{flat, endward};
+  const SurfaceDistance side{round, outward};
+  const SurfaceDistance end{flat, endward};
+  if (std::max(round, flat) > 0.0) {
+    return round > flat ? side : end;
+  }
+  return joined(side, end, rounding);
 }
 
 SurfaceDistance finite_or_far(const SurfaceDistance& found) noexcept {
@@ -105,20 +149,21 @@ PlacedShape::PlacedShape(const Shape& shape) {
   require(origin_.allFinite(), "Shape: point or centre must be finite");
 }
 
-SurfaceDistance PlacedShape::distance(const Vector3d& p) const noexcept {
+SurfaceDistance PlacedShape::distance(const Vector3d& p, double rounding) const noexcept {
   const Vector3d from = p - origin_;
+  const Rounding inside{rounding, 2.0 * (deepest() - rounding)};
   switch (kind_) {
     case Kind::kHalfSpace:
       return {axis_.dot(from), axis_};
     case Kind::kSphere:
       return of_sphere(from, radius_);
     case Kind::kBox: {
-      SurfaceDistance found = of_box(rotation_.transpose() * from, half_);
+      SurfaceDistance found = of_box(rotation_.transpose() * from, half_, inside);
       found.normal = rotation_ * found.normal;
       return found;
     }
     case Kind::kCylinder:
-      return of_cylinder(from, axis_, radius_, half_length_);
+      return of_cylinder(from, axis_, radius_, half_length_, inside);
     case Kind::kRegistered:
       return finite_or_far(law_->distance(p));
   }

@@ -10,7 +10,8 @@ namespace haptrial::scene {
 /// How far a point is from a shape's surface.
 struct SurfaceDistance {
   double distance{0.0};                              // negative inside [m]
-  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // its gradient, a unit vector out of the shape
+  Eigen::Vector3d normal{Eigen::Vector3d::UnitY()};  // a unit vector out of the shape
+  double slope{1.0};  // length of the distance's gradient, which is along the normal
 };
 
 /// A ball that stands for a shape in pictures.
@@ -98,8 +99,11 @@ class PlacedShape {
   /// @throws std::invalid_argument naming the parameter that breaks its bound.
   explicit PlacedShape(const Shape& shape);
 
+  /// @param rounding  width over which the gradient turns between two parts of the surface inside
+  ///                  a box or cylinder, but for as much before the middle; 0: it jumps, and the
+  ///                  distance is exact [m]
   /// Servo thread: no allocation, lock, I/O or throw.
-  SurfaceDistance distance(const Eigen::Vector3d& p) const noexcept;
+  SurfaceDistance distance(const Eigen::Vector3d& p, double rounding = 0.0) const noexcept;
   /// How far the point that lies deepest is from the surface; infinite for a half-space [m].
   double deepest() const noexcept;
 

@@ -11,7 +11,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kCore = 2e-3;  // over which the force fades towards the middle of a shape [m]
+// Over this the force fades towards the middle of a shape, and turns from one face to another [m].
+constexpr double kCore = 2e-3;
 
 }  // namespace
 
@@ -37,15 +38,16 @@ Surface::Surface(const SurfaceParameters& parameters, const Setting& setting)
 /// Towards the middle of a shape the depth grows ever less, so that the force, its gradient times
 /// the spring, fades: a hand that is pushed through would be struck where it turns round.
 Surface::Side Surface::free_side(const Vector3d& p) const noexcept {
-  const SurfaceDistance found = shape_.distance(p);
   if (inside_) {
+    const SurfaceDistance found = shape_.distance(p);
     return {found.distance, -found.normal, 1.0};
   }
+  const SurfaceDistance found = shape_.distance(p, kCore);
   const double whole = deepest_ - core_;
   const double beyond = std::max(-found.distance - whole, 0.0);
   const double share = 1.0 - beyond / core_;
   return {beyond > 0.0 ? whole + 0.5 * (1.0 + share) * beyond : -found.distance, found.normal,
-          share};
+          share * found.slope};
 }
 
 /// Force without the relief, which is felt beyond it.

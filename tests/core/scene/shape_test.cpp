@@ -154,6 +154,50 @@ TEST(ShapeTest, TheNormalIsTheGradientOfTheDistance) {
   }
 }
 
+/// A stroke over the edge of a solid at several depths, in steps of 0.1 mm, as a hand has them at
+/// 0.1 m/s: a spring on the distance is a force with a potential that takes no step at the edge.
+TEST(ShapeTest, TheForceTurnsByDegreesFromOneFaceToTheNext) {
+  constexpr double kRounding = 2e-3;
+  constexpr double kStiffness = 800.0;
+  constexpr double kStep = 1e-4;
+  for (const Shape& shape : {Shape(Box{kOrigin, Vector3d::Constant(0.04)}),
+                             Shape(Cylinder{kOrigin, {0.0, 1.0, 0.0}, 0.02, 0.04})}) {
+    const PlacedShape placed(shape);
+    for (const double depth : {1e-3, 5e-3, 10e-3}) {
+      Vector3d last = kStiffness * depth * Vector3d::UnitY();
+      double work = 0.0;  // that a slow hand does [J]
+      for (double x = 0.0; x < 0.02; x += kStep) {
+        const SurfaceDistance here = placed.distance({x, 0.02 - depth, 1e-9}, kRounding);
+        const Vector3d force = -kStiffness * here.distance * here.slope * here.normal;
+        EXPECT_LT((force - last).norm(), std::max(0.081, 40.0 * depth)) << depth << ", " << x;
+        EXPECT_LE(here.distance, 0.0);
+        EXPECT_GE(here.distance, placed.distance({x, 0.02 - depth, 1e-9}).distance);
+        work -= x > 0.0 ? 0.5 * kStep * (force + last).x() : 0.0;
+        last = force;
+      }
+      EXPECT_NEAR(work, -0.5 * kStiffness * depth * depth, 5e-6) << depth;
+    }
+  }
+}
+
+TEST(ShapeTest, TheNormalOfARoundedSolidIsAlongTheGradientOfItsDistance) {
+  constexpr double kStep = 1e-7;
+  RandomStream random(5, "gradient");
+  const PlacedShape placed(Box{{0.0, 0.004, 0.0}, {0.03, 0.05, 0.02}, {0.3, -0.8, 0.4}});
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d p = random_place(random, 0.02);
+    const SurfaceDistance here = placed.distance(p, 2e-3);
+    Vector3d gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vector3d aside = kStep * Vector3d::Unit(axis);
+      gradient[axis] =
+          (placed.distance(p + aside, 2e-3).distance - placed.distance(p - aside, 2e-3).distance) /
+          (2.0 * kStep);
+    }
+    ASSERT_LT((gradient - here.slope * here.normal).norm(), 1e-4) << p.transpose();
+  }
+}
+
 TEST(ShapeTest, ExactPlaces) {
   const PlacedShape wall(HalfSpace{{0.0, 0.01, 0.0}, {0.0, 5.0, 0.0}});
   EXPECT_DOUBLE_EQ(wall.distance({0.3, 0.013, -0.2}).distance, 0.003);
