@@ -47,8 +47,8 @@ void DeformableObject::start(const PointState& hand) noexcept {
   }
 }
 
-/// A body that moves goes on moving; any other begins at rest under the hand: only what friction
-/// held is forgotten.
+/// A body that moves goes on moving, and the contact with one that rests goes on, also if its
+/// tissue changes; any other begins at rest under the hand.
 void DeformableObject::adopt(const DeformableObject& before) noexcept {
   hand_ = before.hand_;
   if (touch_ && before.touch_) {

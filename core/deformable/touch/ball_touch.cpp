@@ -85,6 +85,33 @@ void BallTouch::start(const Vector3d& tool) noexcept {
   release(tool);
 }
 
+/// From rest alone, a ball that is deep in a body would find no place or others on its first tick.
+void BallTouch::adopt(const BodyTouch& before, const Vector3d& tool) noexcept {
+  start(tool);
+  const auto* same = dynamic_cast<const BallTouch*>(&before);
+  if (same == nullptr || same->tool_ != tool || same->options_.radius != options_.radius ||
+      !(same->body_ == body_ || same_mesh(same->body_->mesh(), body_->mesh()))) {
+    return;
+  }
+  normal_force_ = same->normal_force_;
+  friction_ = same->friction_;
+  bristle_ = same->bristle_;
+  farthest_ = same->farthest_;
+  upright_ = same->upright_;
+  contact_ = same->contact_;
+  loaded_count_ = same->loaded_count_;
+  std::copy_n(same->loaded_.begin(), loaded_count_, loaded_.begin());
+  for (int c = 0; c < same->count_; ++c) {
+    const std::int32_t sample = same->places_[static_cast<std::size_t>(c)].sample;
+    if (sample >= 0 && same->last_pressed_[at(sample)] == same->tick_) {
+      last_pressed_[at(sample)] = tick_;
+    }
+    if (sample >= 0 && same->pressed_in_[at(sample)] == same->round_) {
+      pressed_in_[at(sample)] = round_;
+    }
+  }
+}
+
 void BallTouch::release(const Vector3d& tool) noexcept {
   loaded_count_ = force_count_ = 0;
   normal_force_.setZero();

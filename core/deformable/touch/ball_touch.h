@@ -38,6 +38,9 @@ class BallTouch final : public BodyTouch {
   BallTouch(SharedCompliance body, const TouchOptions& options);
 
   void start(const Eigen::Vector3d& tool) noexcept override;
+  /// Goes on from the contact of `before` if the tool is at the same place of the same mesh,
+  /// whatever its tissue; else starts, as start() does.
+  void adopt(const BodyTouch& before, const Eigen::Vector3d& tool) noexcept override;
   const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept override;
   std::span<const VertexForce> forces() const noexcept override {
     return std::span(forces_).first(force_count_);

@@ -57,7 +57,7 @@ class BodyTouch {
 
   /// Puts the tool to a point, and the body to rest.
   virtual void start(const Eigen::Vector3d& tool) noexcept = 0;
-  /// Contact with the same body before goes on, if it moves; any other body begins at rest.
+  /// Contact with the same body before goes on; any other body begins at rest.
   virtual void adopt(const BodyTouch&, const Eigen::Vector3d& tool) noexcept { start(tool); }
   /// One tick. @param tool  [m]; not finite: zero force  @param period  > 0 [s]
   virtual const contact::Contact& tick(const Eigen::Vector3d& tool, double period) noexcept = 0;

@@ -66,6 +66,55 @@ LoadCase load_of(const HapticMesh& mesh, std::span<const VertexForce> forces) {
   return load;
 }
 
+/// A ball that is pressed deeply into a block of a tissue, as another touch adopts it.
+class AdoptedTouchTest : public testing::Test {
+ protected:
+  static SharedCompliance block_of(double young) {
+    Tissue tissue = soft_tissue();
+    tissue.young = young;
+    return std::make_shared<const Compliance>(soft_block(6), tissue);
+  }
+  static constexpr double kDepth = 0.006;
+  const Vector3d over_{0.0013, kTop + 0.006, 0.0007};
+  const Vector3d tool_{over_ - Vector3d(0.0, kDepth, 0.0)};
+  const SharedCompliance soft_{block_of(20e3)};
+};
+
+TEST_F(AdoptedTouchTest, ATouchOfTheSameBodyGoesOn) {
+  BallTouch first(soft_, ball(0.006, 5000.0, {0.5, 0.4}));
+  BallTouch next(soft_, ball(0.006, 5000.0, {0.5, 0.4}));
+  press_to(first, over_, kDepth, 200);
+  next.adopt(first, tool_);
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d tool = tool_ + Vector3d(1e-5 * i, 1e-6 * i, 0.0);
+    const Vector3d felt = first.tick(tool, kTick).force;
+    ASSERT_GT(felt.y(), 1.0) << i;
+    ASSERT_LT((next.tick(tool, kTick).force - felt).norm(), 1e-9) << i;
+  }
+}
+
+TEST_F(AdoptedTouchTest, ATouchOfAFirmerTissueIsAtOnceWhatASlowPressFeels) {
+  const SharedCompliance firm = block_of(26e3);
+  BallTouch first(soft_, ball(0.006, 5000.0));
+  BallTouch next(firm, ball(0.006, 5000.0));
+  BallTouch slow(firm, ball(0.006, 5000.0));
+  press_to(first, over_, kDepth, 200);
+  const Vector3d expected = press_to(slow, over_, kDepth, 200).force;
+  next.adopt(first, tool_);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_LT((next.tick(tool_, kTick).force - expected).norm(), 0.01 * expected.norm()) << i;
+  }
+}
+
+TEST_F(AdoptedTouchTest, ATouchFromAnotherPlaceStarts) {
+  BallTouch first(soft_, ball(0.006, 5000.0));
+  BallTouch next(soft_, ball(0.006, 5000.0));
+  press_to(first, over_, kDepth, 200);
+  const Vector3d away = over_ + Vector3d(0.0, 0.001, 0.0);
+  next.adopt(first, away);
+  EXPECT_EQ(next.tick(away, kTick).force.norm(), 0.0);
+}
+
 TEST(BallTouchTest, WhatIsFeltIsWhatTheBodyGets) {
   BallTouch touch(soft_body(), ball(0.006, 5000.0, {0.5, 0.4}));
   Vector3d hand(0.001, kTop + 0.006, -0.002);
