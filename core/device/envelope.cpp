@@ -11,12 +11,16 @@
 namespace haptrial::device {
 namespace {
 
-constexpr double kGrowthInDoubt = 2.0;   // times the holding force, while readings are suspicious
-constexpr double kFallInDoubt = 20.0;    // while the position may be frozen [N/s]
-constexpr double kNotFelt = 0.2;         // change of force in a tick [N]
-constexpr double kShortestFade = 0.05;   // [s]
-constexpr double kLongestAtLimit = 3.0;  // [s]
-constexpr double kLargestHolding = 2.0;  // [N]
+constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readings are suspicious
+constexpr double kFallInDoubt = 20.0;   // while the position may be frozen [N/s]
+constexpr double kNotFelt = 0.2;        // change of force in a tick [N]
+constexpr double kShortestFade = 0.05;  // [s]
+// A force that fades gives way to no hand: within these times a hand that lets go is not pushed
+// far.
+constexpr double kLongestChange = 0.2;      // [s]
+constexpr double kLongestRampOut = 0.5;     // [s]
+constexpr double kLongestAtLimit = 3.0;     // [s]
+constexpr double kLargestHolding = 2.0;     // [N]
 constexpr double kFastestForce = 10'000.0;  // [N/s]
 
 }  // namespace
@@ -42,11 +46,11 @@ const Schema<EnvelopeLimits>& envelope_schema() {
           .number("ramp_in", &E::ramp_in, {kShortestFade, 10.0}, "s",
                   "Time over which the force of a pass grows from zero")
           .required()
-          .number("ramp_out", &E::ramp_out, {kShortestFade, 10.0}, "s",
+          .number("ramp_out", &E::ramp_out, {kShortestFade, kLongestRampOut}, "s",
                   "Time over which the force falls to zero after a normal end")
           .required()
           .number(
-              "change_time", &E::change_time, {kShortestFade, 10.0}, "s",
+              "change_time", &E::change_time, {kShortestFade, kLongestChange}, "s",
               "Time over which the force goes over to that of another stage, question or object")
           .number("max_saturation", &E::max_saturation, {0.0, kLongestAtLimit, true}, "s",
                   "Longest time without a break at max_force; a longer one ends the pass")
