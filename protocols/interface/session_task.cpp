@@ -245,13 +245,19 @@ PassOutput SessionTask::nothing() const noexcept {
   return out;
 }
 
-/// Looks at the first device alone.
+/// The device, rotation or grip that lost most counts.
 void SessionTask::note_gains(const PassOutput& out) noexcept {
-  const control::GainShares& shares = devices_.readings()[0].shares;
-  if (out.stage == record::Stage::kRun && shares.damping < kNoticed) {
-    control::GainShares& least = result_.least_gains;
-    least.damping = std::min(least.damping, shares.damping);
-    least.stiffness = std::min(least.stiffness, shares.stiffness);
+  control::GainShares least;
+  for (const device::DeviceReading& reading : devices_.readings().all()) {
+    if (reading.shares.damping < kNoticed) {
+      least.damping = std::min(least.damping, reading.shares.damping);
+      least.stiffness = std::min(least.stiffness, reading.shares.stiffness);
+    }
+  }
+  if (out.stage == record::Stage::kRun && least.damping < kNoticed) {
+    control::GainShares& result = result_.least_gains;
+    result.damping = std::min(result.damping, least.damping);
+    result.stiffness = std::min(result.stiffness, least.stiffness);
     ++result_.reduced_ticks;
   }
 }

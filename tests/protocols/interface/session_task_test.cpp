@@ -576,6 +576,45 @@ TEST_F(SessionTaskTest, WhatChangesWithAStageFades) {
   EXPECT_EQ(device_.written.back(), Vector3d(0, -3, 0));
 }
 
+/// Swings the force of the second device by 4 N at 25 Hz, as that of a handle that oscillates.
+class SecondSwingsPass final : public Pass {
+ public:
+  static constexpr int kTicks = 200;
+
+  PassOutput tick(const Readings&, double) noexcept override {
+    second_.force.y() = done_++ / 20 % 2 == 0 ? 2.0 : -2.0;
+    PassOutput out;
+    out.stage = record::Stage::kRun;
+    return out;
+  }
+  std::span<const Drive> others() const noexcept override { return {&second_, 1}; }
+  PassState state() const noexcept override {
+    return done_ < kTicks ? PassState::kRunning : PassState::kCompleted;
+  }
+
+ private:
+  Drive second_;
+  int done_{0};
+};
+
+TEST_F(SessionTaskTest, GainsThatASecondDeviceLosesAreKnown) {
+  test::ScriptedDevice first;
+  test::ScriptedDevice second;
+  SessionTask::Log log;
+  SessionTask task(
+      SessionTask::Parts{.devices = {{&first, limits()}, {&second, limits()}}, .log = log},
+      Leave::kNever);
+  SecondSwingsPass pass;
+  task.start(pass, 0);
+  for (std::uint64_t i = 0; i < 2 * SecondSwingsPass::kTicks && !task.idle(); ++i) {
+    task.tick({i, static_cast<std::int64_t>(i) * 1'000'000, kDt});
+  }
+  ASSERT_TRUE(task.idle());
+  EXPECT_EQ(task.result().state, PassState::kCompleted);
+  EXPECT_GT(task.result().reduced_ticks, 50u);
+  EXPECT_LT(task.result().least_gains.damping, 0.5);
+}
+
 TEST_F(SessionTaskTest, ATickDoesNotAllocate) {
   const stimulus::Stimulus stimulus = stimulus::make_stimulus({}, {}, 1);
   RecallTest pass(stimulus, {}, 1);
