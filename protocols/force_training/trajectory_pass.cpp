@@ -289,9 +289,10 @@ PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
   Eigen::Vector3d wanted = trajectory_controller_.force(target, tool, reading.shares);
   const control::GainShares held{reading.shares.stiffness, takes_hold() * reading.shares.damping};
   wanted.y() = pushes ? out.target_force : plane_controller_.force(target, tool, held).y();
-  out.force = control::saturate(wanted, parameters_.force_limit);
+  out.most = parameters_.force_limit;
+  out.force = control::saturate(wanted, out.most);
   out.intent = intent(target, reading, out.force, pushes);
-  out.saturated = longer(wanted, parameters_.force_limit);
+  out.saturated = longer(wanted, out.most);
 
   PassMoment moment{tool.position, stage_, along_, out.target_force, out.force.y(), out.saturated};
   if (runs && guide_) {

@@ -61,6 +61,25 @@ TEST(EveryHandTest, AHandleThatIsLetGoInMidPassIsQuiet) {
   }
 }
 
+/// The guard's damper included, which comes for a light hand that the plane makes swing.
+TEST(EveryHandTest, NoForceIsBeyondTheLimitOfGuidance) {
+  const stimulus::Stimulus stimulus = stimulus::make_stimulus({}, {}, 8);
+  GuidanceParameters guidance;
+  guidance.force_limit = 2.0;
+  for (const double mass : {0.001, 0.05}) {
+    RecallTest pass(stimulus, guidance, 1);
+    PassRun run(pass, {1000.0, 3}, mass);
+    double most = 0.0;
+    for (int i = 0; i < 8000 && !run.idle(); ++i) {
+      run.hand().press = i > 4000 ? 1.0 : 0.0;
+      run.advance(1e-3);
+      most = std::max(most, run.force.norm());
+    }
+    EXPECT_GT(most, 1.5) << mass;
+    EXPECT_LE(most, 2.0 + 1e-9) << mass;
+  }
+}
+
 /// The plane of the source far below the envelope's limit, by a protocol that does not give way.
 class StubbornPass final : public Pass {
  public:
