@@ -14,6 +14,7 @@
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 #include "tests/support/allocation_guard.h"
+#include "tests/support/replaced.h"
 
 namespace haptrial::protocols::answers_by_mark_test {
 namespace {
@@ -197,6 +198,18 @@ TEST(MarkMeansTest, MistakesAreNamed) {
               Contains(HasSubstr("no pointer is on the line")));
   EXPECT_THAT(problems("number = [0, 10]\nby = \"hand\"\n"), Contains(HasSubstr("by")))
       << "numbers have no mark";
+}
+
+TEST(MarkMeansTest, NoFieldActsForLongWhileTheHandMarks) {
+  const auto problems = [](const char* by, const char* fade) {
+    return problems_of_trials(
+        test::replaced(asking(std::string("scale = [0, 10]\nby = \"") + by + "\"\n"),
+                       "damping = 0.0\n", std::string("damping = 0.0\nfade_out = ") + fade + "\n"));
+  };
+  EXPECT_THAT(problems("hand", "1.0"), IsEmpty());
+  EXPECT_THAT(problems("keys", "60.0"), IsEmpty());
+  EXPECT_THAT(problems("hand", "60.0"),
+              Contains(HasSubstr("fields.floor has a fade_out of 60 s; allowed: at most 1 [s]")));
 }
 
 }  // namespace
