@@ -58,6 +58,21 @@ TEST(DeformableObjectTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
             1e-3 * force.norm());
 }
 
+/// As the next interval of a trial, at the place of the hand in the last tick.
+TEST(DeformableObjectTest, AHandThatRestsDeepInABlockFeelsTheSameWhenTheNextSceneBegins) {
+  Scene first({soft_block()}, 1000.0);
+  const Vector3d force = pressed(first, {}, 0.006);
+  ASSERT_GT(force.y(), 0.5);
+  Scene next({soft_block()}, 1000.0);
+  next.start_from(first);
+  next.switch_to(Scene::kAll);
+  PointState hand;
+  hand.position = {0.001, kTop, 0.002};
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_LT((next.force(hand) - force).norm(), 0.01 * force.norm()) << i;
+  }
+}
+
 TEST(DeformableObjectTest, ItIsNoStifferThanItsBoundAndATickDoesNotAllocate) {
   const Field field = soft_block();
   Scene scene({field}, 1000.0);
