@@ -29,7 +29,8 @@ struct Rounding {
 };
 
 /// The greater of two distances inside, whose gradient turns from one to the other where they
-/// differ by less than a width w (a polynomial smooth maximum). Of the sum s of both depths,
+/// differ by less than a width w (a polynomial smooth maximum). It follows from the sum s of
+/// depths,
 ///
 ///     w = W u / (W S + u),  u = s (S - s)
 ///

@@ -58,7 +58,7 @@ TEST(DeformableObjectTest, ABlockThatIsTurnedAndMovedIsFeltTurnedAndMoved) {
             1e-3 * force.norm());
 }
 
-/// As the next interval of a trial, at the place of the hand in the last tick.
+/// The next interval of a trial begins at the place that the hand had on the last tick.
 TEST(DeformableObjectTest, AHandThatRestsDeepInABlockFeelsTheSameWhenTheNextSceneBegins) {
   Scene first({soft_block()}, 1000.0);
   const Vector3d force = pressed(first, {}, 0.006);
