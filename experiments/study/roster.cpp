@@ -133,7 +133,7 @@ class RosterMaker {
       });
       if (at == roster_.persons.end()) {
         roster_.persons.push_back({info.subject,
-                                   number_of_subject(info.subject),
+                                   number_of_session(info),
                                    "",
                                    info.pilot,
                                    excluded,
@@ -147,6 +147,11 @@ class RosterMaker {
         roster_.remarks.push_back(fmt::format(
             "{} has two files of session {}: {} and {}.", info.subject, found.session.session,
             at->session(found.session.session)->file, found.session.file));
+      }
+      if (number_of_session(info) != at->number) {
+        roster_.remarks.push_back(fmt::format(
+            "{} was recorded in the order of participant {}, and {} in that of {}.",
+            at->sessions.front().file, at->number, found.session.file, number_of_session(info)));
       }
       at->sessions.push_back(found.session);
       if (!info.pilot && !excluded) {
@@ -295,7 +300,7 @@ class RosterMaker {
     std::string prefix = "P";
     std::size_t digits = 2;
     for (const RosterPerson& person : roster_.persons) {
-      if (!person.pilot && !person.excluded && person.number > 0) {
+      if (!person.pilot && !person.excluded && number_of_subject(person.subject) > 0) {
         const std::size_t letters = person.subject.find_last_not_of("0123456789") + 1;
         prefix = person.subject.substr(0, letters);
         digits = person.subject.size() - letters;
@@ -332,6 +337,9 @@ class RosterMaker {
     next.command =
         fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
     next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";
+    next.command += next.number > 0 && next.number != number_of_subject(next.subject)
+                        ? fmt::format(" --participant {}", next.number)
+                        : "";
     next.command += next.resume ? " --resume" : "";
     const bool led = !d_.tutoring.led.groups.empty() &&
                      d_.is_led(next.session, {1, next.number - 1, next.group});

@@ -31,7 +31,7 @@ struct RosterSession {
 /// Somebody who has a session file.
 struct RosterPerson {
   std::string subject;
-  int number{0};      // at the end of the identifier; 0: none
+  int number{0};      // that chose the orders; 0: an older file of an identifier without one
   std::string group;  // empty: the study has none, or the number belongs to none
   bool pilot{false};
   bool excluded{false};  // the files lie in the folder "excluded"

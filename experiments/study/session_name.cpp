@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/record/rows/session_types.h"
+
 namespace haptrial::experiments {
 
 std::string session_file_name(const std::string& subject, int session, int sessions) {
@@ -20,6 +22,11 @@ int number_of_subject(const std::string& subject) {
   }
   const int number = std::stoi(digits);
   return number <= kMost ? number : 0;
+}
+
+int number_of_session(const record::SessionInfo& info) {
+  return info.participant_number != 0 ? static_cast<int>(info.participant_number)
+                                      : number_of_subject(info.subject);
 }
 
 }  // namespace haptrial::experiments

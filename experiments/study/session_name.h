@@ -2,6 +2,10 @@
 
 #include <string>
 
+namespace haptrial::record {
+struct SessionInfo;
+}
+
 namespace haptrial::experiments {
 
 /// The name of a session's file: "P01.h5"; where participants come several times
@@ -12,5 +16,9 @@ std::string session_file_name(const std::string& subject, int session, int sessi
 
 /// The number at the end of an identifier, from 1 to 10000; 0 if it has none.
 int number_of_subject(const std::string& subject);
+
+/// The number by which a session's orders were chosen: the recorded one, or in an older file that
+/// of the identifier.
+int number_of_session(const record::SessionInfo& info);
 
 }  // namespace haptrial::experiments

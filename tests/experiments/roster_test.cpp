@@ -331,6 +331,31 @@ TEST_F(RosterTest, RunTakesTheSeedOfTheSessionsInTheFolder) {
   EXPECT_EQ(roster().seed, 5u);
 }
 
+TEST_F(RosterTest, AParticipantHasTheNumberOfTheRecording) {
+  std::string one_group = kGroups;
+  const std::string groups = "[groups]\nleft = 2\nright = 4\n";
+  test::write_text(definition_, one_group.erase(one_group.find(groups), groups.size()));
+  experiment_ = load_experiment(definition_);
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  ASSERT_EQ(haptrial(run + " --subject VPx --participant 2 --session 1").status, 0);
+  ASSERT_EQ(haptrial(run + " --subject P05 --participant 3 --session 1").status, 0);
+  const Roster now = roster();
+  EXPECT_THAT(now.remarks, IsEmpty());
+  ASSERT_EQ(now.persons.size(), 2u);
+  EXPECT_EQ(now.persons[0].number, 3);
+  EXPECT_EQ(now.persons[1].number, 2);
+  EXPECT_THAT(nexts(now), ElementsAre("P01 1", "P05 2", "VPx 2"));
+  EXPECT_THAT(now.next[1].command, HasSubstr(" --subject P05 --session 2 --participant 3 "));
+  // A later session keeps the number without being told.
+  const auto later = haptrial(run + " --subject P05 --session 2");
+  ASSERT_EQ(later.status, 0) << later.errors;
+  EXPECT_EQ(record::SessionReader(sessions_ / "P05-session-2.h5").info().participant_number, 3u);
+  ASSERT_EQ(haptrial(run + " --subject VPx --session 2 --participant 1").status, 0);
+  EXPECT_THAT(roster().remarks,
+              ElementsAre("VPx-session-1.h5 was recorded in the order of participant 2, and "
+                          "VPx-session-2.h5 in that of 1."));
+}
+
 TEST_F(RosterTest, TheCommandsThatItShowsAreGood) {
   record("P01", 1);
   const Roster before = roster();

@@ -386,8 +386,8 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
                   "Seed of the study, the same for all participants (default: that of the sessions "
                   "in the folder; 1 if there are none)");
   sub->add_option("--participant", o.participant,
-                  "Participant's number, for the order of conditions (default: the one that ends "
-                  "the identifier)");
+                  "Participant's number, for the order of conditions (default: that of the "
+                  "participant's earlier sessions, or the one that ends the identifier)");
   sub->add_option("--trials", o.trials, "Number of trials, from the first (default: all)");
   RunOptions teaching;
   teaching.teach = 1;

@@ -13,6 +13,7 @@
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/sessions/run_checks.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/groups.h"
 
@@ -224,6 +225,9 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
     checked_session(*options.session, d);
   }
   std::string words = chosen(options, experiment);
+  if (!options.participant) {
+    options.participant = recorded_number(options, session_file(options, d));
+  }
   check_place(options, d);
   if (options.case_name.empty() && has_cases(experiment)) {
     choose_case(options, experiment);

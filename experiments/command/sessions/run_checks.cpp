@@ -214,6 +214,19 @@ std::string session_seed(const RunOptions& options, const fs::path& own) {
   return options.pilot || earlier.empty() ? "1" : fmt::to_string(earlier.front().info.seed);
 }
 
+std::optional<int> recorded_number(const RunOptions& options, const fs::path& own) {
+  std::vector<EarlierSession> sessions = earlier_sessions(options, own);
+  if (options.resume && record::SessionWriter::can_resume(own)) {
+    const fs::path partial = record::partial_path(own);
+    sessions.insert(sessions.begin(), {partial, record::SessionReader(partial).info()});
+  }
+  const auto at = std::ranges::find_if(sessions, [&](const EarlierSession& each) {
+    return each.info.subject == options.subject && each.info.participant_number != 0;
+  });
+  return at != sessions.end() ? std::optional(static_cast<int>(at->info.participant_number))
+                              : std::nullopt;
+}
+
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
                         const protocols::Definition& setup, const fs::path& own) {
   std::string changed;

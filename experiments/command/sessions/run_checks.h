@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "experiments/command/sessions/run_options.h"
@@ -25,6 +26,11 @@ void check_session_file(const RunOptions& options, const std::filesystem::path& 
 /// sessions in the folder; else 1.
 /// @param own  file of the session that is to be recorded
 std::string session_seed(const RunOptions& options, const std::filesystem::path& own);
+
+/// The number by which the participant's session that is resumed, or one in the folder, was
+/// recorded; none if there is no such session or an older file does not have it.
+/// @param own  file of the session that is to be recorded
+std::optional<int> recorded_number(const RunOptions& options, const std::filesystem::path& own);
 
 /// Compares definition and seed with those of the sessions that the folder holds already; a
 /// pilot may differ from all of them.

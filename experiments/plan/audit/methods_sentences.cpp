@@ -124,7 +124,7 @@ std::string loop_words(const std::vector<MethodsSession>& sessions) {
 std::array<int, 2> led_trials(const MethodsSession& session, const protocols::Definition& d,
                               const std::string& group) {
   std::set<int> led, all;
-  const int participant = std::max(1, number_of_subject(session.facts.info.subject)) - 1;
+  const int participant = std::max(1, number_of_session(session.facts.info)) - 1;
   for (const record::PassRow& pass : session.passes) {
     if (!pass.practice) {
       all.insert(pass.trial);
