@@ -23,7 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using protocols::StudyGroup;
 
-constexpr const char* kExcluded = "excluded";
 constexpr const char* kVirtual = "virtual";
 
 struct FoundFile {
@@ -95,7 +94,7 @@ class RosterMaker {
   Roster make() {
     roster_.sessions = d_.sessions();
     add_files(found_in(request_.folder, roster_.remarks), false);
-    add_files(found_in(request_.folder / kExcluded, roster_.remarks), true);
+    add_files(found_in(request_.folder / kExcludedFolder, roster_.remarks), true);
     roster_.seed = request_.seed.value_or(seed_.value_or(1));
     std::sort(roster_.persons.begin(), roster_.persons.end(), [](const auto& a, const auto& b) {
       return std::tie(a.pilot, a.excluded, a.subject) < std::tie(b.pilot, b.excluded, b.subject);
@@ -294,8 +293,7 @@ class RosterMaker {
     }
   }
 
-  /// Identifier in the form of those before: "P07". After somebody who was excluded: "Pb07", then
-  /// "Pc07".
+  /// Identifier in the form of those before: "P07".
   std::string subject_for(int number) const {
     std::string prefix = "P";
     std::size_t digits = 2;
@@ -307,14 +305,8 @@ class RosterMaker {
         break;
       }
     }
-    const auto name = [&](const std::string& mark) {
-      return fmt::format("{}{}{:0{}}", prefix, mark, number, digits);
-    };
-    std::string free = name("");
-    for (char mark = 'b'; is_known(free) && mark <= 'z'; ++mark) {
-      free = name(std::string(1, mark));
-    }
-    return free;
+    return replacement_of(fmt::format("{}{:0{}}", prefix, number, digits),
+                          [this](const std::string& name) { return is_known(name); });
   }
   bool is_known(const std::string& subject) const {
     return std::any_of(roster_.persons.begin(), roster_.persons.end(),

@@ -24,6 +24,16 @@ int number_of_subject(const std::string& subject) {
   return number <= kMost ? number : 0;
 }
 
+std::string replacement_of(const std::string& subject,
+                           const std::function<bool(const std::string&)>& is_taken) {
+  const std::size_t letters = subject.find_last_not_of("0123456789") + 1;
+  std::string free = subject;
+  for (char mark = 'b'; is_taken(free) && mark <= 'z'; ++mark) {
+    free = subject.substr(0, letters) + mark + subject.substr(letters);
+  }
+  return free;
+}
+
 int number_of_session(const record::SessionInfo& info) {
   return info.participant_number != 0 ? static_cast<int>(info.participant_number)
                                       : number_of_subject(info.subject);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 namespace haptrial::record {
@@ -16,6 +17,13 @@ std::string session_file_name(const std::string& subject, int session, int sessi
 
 /// The number at the end of an identifier, from 1 to 10000; 0 if it has none.
 int number_of_subject(const std::string& subject);
+
+/// Folder beside the session files for those of excluded participants.
+inline constexpr const char* kExcludedFolder = "excluded";
+
+/// Identifier of whoever replaces an excluded participant: "Pb07" after "P07", then "Pc07".
+std::string replacement_of(const std::string& subject,
+                           const std::function<bool(const std::string&)>& is_taken);
 
 /// The number by which a session's orders were chosen: the recorded one, or in an older file that
 /// of the identifier.

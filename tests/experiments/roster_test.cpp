@@ -260,6 +260,13 @@ TEST_F(RosterTest, WhoIsExcludedIsReplacedByTheNextOne) {
   EXPECT_EQ(now.groups[0].begun, 0);
   EXPECT_EQ(now.groups[1].begun, 1);
   EXPECT_EQ(haptrial(command + " --exclude P01 --because again").status, 2);
+  for (const char* name : {"P01", "p01"}) {
+    const auto same = haptrial("run " + quoted(definition_) + " --out " + quoted(sessions_) +
+                               " --session 1 --subject " + name);
+    EXPECT_EQ(same.status, 2) << name;
+    EXPECT_THAT(same.errors, HasSubstr("is of an excluded participant with that identifier; choose "
+                                       "another one, such as "));
+  }
   record("Pb01", 1);
   ASSERT_EQ(haptrial(command + " --exclude Pb01 --because 'too old'").status, 0);
   EXPECT_THAT(test::read_text(sessions_ / "excluded/reasons.csv"), HasSubstr("\nPb01,too old\n"));

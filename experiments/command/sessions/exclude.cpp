@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "experiments/plan/plan_log.h"
+#include "experiments/study/session_name.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -37,7 +38,7 @@ void exclude(const Roster& roster, const fs::path& folder, const std::string& su
         "who has one",
         subject, folder.string()));
   }
-  const fs::path excluded = folder / "excluded";
+  const fs::path excluded = folder / kExcludedFolder;
   for (const RosterSession& session : person->sessions) {
     if (session.state == SessionState::kRunning) {
       throw InputError(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
@@ -15,6 +16,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/runner/devices.h"
 #include "experiments/studies/registry.h"
+#include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/protocol.h"
@@ -120,10 +122,11 @@ struct EarlierSession {
 /// Sessions of the same kind in the folder, finished or not, by name. A file that cannot be read
 /// says nothing about the study: `analyze` names it.
 /// @param own  file of the session that is to be recorded
-std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs::path& own) {
+std::vector<EarlierSession> earlier_sessions(const fs::path& folder, bool pilot,
+                                             const fs::path& own) {
   std::vector<EarlierSession> sessions;
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(options.out, ignored)) {
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     const fs::path& file = entry.path();
     const bool same = file == own || file == record::partial_path(own) ||
                       file.stem().stem() == own.stem();  // or what was recovered of it
@@ -132,7 +135,7 @@ std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs
     }
     try {
       const record::SessionInfo info = record::SessionReader(file).info();
-      if (info.pilot == options.pilot) {
+      if (info.pilot == pilot) {
         sessions.push_back({file, info});
       }
     } catch (const InputError&) {
@@ -143,18 +146,44 @@ std::vector<EarlierSession> earlier_sessions(const RunOptions& options, const fs
   return sessions;
 }
 
+bool same_but_for_case(const std::string& one, const std::string& other) {
+  return std::ranges::equal(one, other, [](unsigned char a, unsigned char b) {
+    return std::tolower(a) == std::tolower(b);
+  });
+}
+
 /// "p01" beside "P01" would be somebody else, who never came before.
 void refuse_other_case(const RunOptions& options, const EarlierSession& earlier) {
-  const auto same = [](unsigned char a, unsigned char b) {
-    return std::tolower(a) == std::tolower(b);
-  };
   const std::string& theirs = earlier.info.subject;
-  if (theirs != options.subject && std::ranges::equal(theirs, options.subject, same)) {
+  if (theirs != options.subject && same_but_for_case(theirs, options.subject)) {
     throw InputError(
         fmt::format("--subject is '{}', and {} is of '{}'; write the same participant in the same "
                     "way, or choose a name that differs in more than capitals",
                     options.subject, earlier.file.string(), theirs));
   }
+}
+
+/// Two people with one identifier could be neither excluded nor withdrawn apart.
+void refuse_excluded(const RunOptions& options) {
+  std::vector<EarlierSession> known =
+      earlier_sessions(fs::path(options.out) / kExcludedFolder, false, {});
+  const auto of = [&known](const std::string& subject) {
+    return std::ranges::find_if(known, [&](const EarlierSession& each) {
+      return same_but_for_case(each.info.subject, subject);
+    });
+  };
+  const auto excluded = of(options.subject);
+  if (excluded == known.end()) {
+    return;
+  }
+  const std::string file = excluded->file.string();
+  std::ranges::copy(earlier_sessions(options.out, false, {}), std::back_inserter(known));
+  const std::string free = replacement_of(
+      options.subject, [&](const std::string& name) { return of(name) != known.end(); });
+  throw InputError(
+      fmt::format("--subject is '{}', and {} is of an excluded participant with that identifier; "
+                  "choose another one, such as {}, which has the same number",
+                  options.subject, file, free));
 }
 
 /// A recording plays the hand back, which answers by place, and silence; nobody presses its keys,
@@ -210,12 +239,12 @@ std::string session_seed(const RunOptions& options, const fs::path& own) {
   if (options.resume && record::SessionWriter::can_resume(own)) {
     return fmt::to_string(record::SessionReader(record::partial_path(own)).info().seed);
   }
-  const std::vector<EarlierSession> earlier = earlier_sessions(options, own);
+  const std::vector<EarlierSession> earlier = earlier_sessions(options.out, options.pilot, own);
   return options.pilot || earlier.empty() ? "1" : fmt::to_string(earlier.front().info.seed);
 }
 
 std::optional<int> recorded_number(const RunOptions& options, const fs::path& own) {
-  std::vector<EarlierSession> sessions = earlier_sessions(options, own);
+  std::vector<EarlierSession> sessions = earlier_sessions(options.out, options.pilot, own);
   if (options.resume && record::SessionWriter::can_resume(own)) {
     const fs::path partial = record::partial_path(own);
     sessions.insert(sessions.begin(), {partial, record::SessionReader(partial).info()});
@@ -230,7 +259,10 @@ std::optional<int> recorded_number(const RunOptions& options, const fs::path& ow
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,
                         const protocols::Definition& setup, const fs::path& own) {
   std::string changed;
-  for (const EarlierSession& earlier : earlier_sessions(options, own)) {
+  if (!options.pilot) {
+    refuse_excluded(options);
+  }
+  for (const EarlierSession& earlier : earlier_sessions(options.out, options.pilot, own)) {
     refuse_other_case(options, earlier);
     if (options.pilot) {
       continue;  // each pilot may try something else

@@ -32,10 +32,11 @@ std::string session_seed(const RunOptions& options, const std::filesystem::path&
 /// @param own  file of the session that is to be recorded
 std::optional<int> recorded_number(const RunOptions& options, const std::filesystem::path& own);
 
-/// Compares definition and seed with those of the sessions that the folder holds already; a
-/// pilot may differ from all of them.
+/// Compares identifier, definition and seed with those of the sessions that the folder holds
+/// already; a pilot may differ from all of them.
 /// @returns a sentence about keys that differ and may; empty if none
-/// @throws InputError if they are of another study or seed; names the keys.
+/// @throws InputError if they are of another study or seed, naming the keys, and for the
+/// identifier of an excluded participant.
 /// @param options  with a seed
 /// @param own  file of the session that is to be recorded
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,

@@ -7,14 +7,13 @@
 #include "core/record/read/definition_versions.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/plan/plan_log.h"
+#include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kExcludedFolder = "excluded";
 
 SessionFacts facts_of(const fs::path& file, bool excluded) {
   SessionFacts facts;
