@@ -22,11 +22,31 @@ bool is_there(const fs::path& file) noexcept {
   return lstat(file.c_str(), &entry) == 0;
 }
 
-/// Opens a file that was not there and tells its name.
+/// The file that a symbolic link stands for; the link itself if there is none.
+fs::path target_of(const fs::path& file) {
+  std::error_code error;
+  const fs::path target = fs::canonical(file, error);
+  return error || !fs::is_symlink(file, error) ? file : target;
+}
+
+/// Gives a file the mode and the owner of the one that it replaces. Only the superuser may give
+/// files away, so the owner is that of the writer elsewhere.
+void keep_access(const fs::path& part, const fs::path& replaced) {
+  struct stat before {};
+  if (stat(replaced.c_str(), &before) == 0) {
+    [[maybe_unused]] const int owner = chown(part.c_str(), before.st_uid, before.st_gid);
+    chmod(part.c_str(), before.st_mode & 0777);
+  }
+}
+
+/// Opens a file that was not there and tells its name. Nobody else may read what replaces a
+/// private file.
 int open_new(const fs::path& file, std::string_view ending, fs::path& part) {
+  struct stat before {};
+  const mode_t mode = stat(file.c_str(), &before) == 0 ? 0600 : 0666;
   for (int number = 1;; ++number) {
     part = file.string() + fmt::format(".partial-{}{}", number, ending);
-    const int descriptor = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    const int descriptor = open(part.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
     if (descriptor >= 0) {
       return descriptor;
     }
@@ -40,7 +60,7 @@ int open_new(const fs::path& file, std::string_view ending, fs::path& part) {
 }  // namespace
 
 WholeFile::WholeFile(fs::path file, bool overwrite, std::string_view ending)
-    : file_(std::move(file)), overwrite_(overwrite) {
+    : file_(std::move(file)), target_(overwrite ? target_of(file_) : file_), overwrite_(overwrite) {
   std::error_code unknown;
   if (fs::is_directory(file_, unknown)) {
     throw InputError(fmt::format("{}: is a folder; give the name of a file", file_.string()));
@@ -48,7 +68,7 @@ WholeFile::WholeFile(fs::path file, bool overwrite, std::string_view ending)
   if (!overwrite_ && is_there(file_)) {
     throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
   }
-  const int descriptor = open_new(file_, ending, part_);
+  const int descriptor = open_new(target_, ending, part_);
   stream_ = fdopen(descriptor, "wb");
   if (stream_ == nullptr) {
     const int error = errno;
@@ -87,9 +107,12 @@ void WholeFile::finish() {
     }
     close();
   }
-  const int error = !overwrite_                                   ? rename_to_new(part_, file_)
-                    : ::rename(part_.c_str(), file_.c_str()) != 0 ? errno
-                                                                  : 0;
+  if (overwrite_) {
+    keep_access(part_, target_);
+  }
+  const int error = !overwrite_                                     ? rename_to_new(part_, file_)
+                    : ::rename(part_.c_str(), target_.c_str()) != 0 ? errno
+                                                                    : 0;
   if (error == EEXIST && !overwrite_) {
     throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
   }

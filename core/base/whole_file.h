@@ -9,6 +9,8 @@ namespace haptrial {
 
 /// A file that is written whole or not at all: the bytes go to FILE.partial-N beside it, which
 /// takes its name in finish(). Without that, or when the program is told to stop, nothing is left.
+/// A file that is replaced keeps its mode, and its owner where the system allows it; of a symbolic
+/// link the target is replaced.
 class WholeFile {
  public:
   /// @param overwrite  replace a file that is there
@@ -40,6 +42,7 @@ class WholeFile {
   [[noreturn]] void fail(const char* what, int error) const;
 
   std::filesystem::path file_;
+  std::filesystem::path target_;  // of file_, where that is a symbolic link; else file_
   std::filesystem::path part_;
   bool overwrite_;
   bool finished_{false};

@@ -1,0 +1,51 @@
+#include "core/base/whole_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "core/base/file_text.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(WholeFileTest, TheTargetOfALinkIsReplaced) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder / "common");
+  std::ofstream(folder / "common/study.toml") << "old";
+  fs::create_symlink("common/study.toml", folder / "study.toml");
+  fs::create_symlink("study.toml", folder / "again.toml");
+  write_whole(folder / "again.toml", "new");
+  EXPECT_EQ(file_text(folder / "common/study.toml"), "new");
+  EXPECT_TRUE(fs::is_symlink(folder / "study.toml"));
+  EXPECT_TRUE(fs::is_symlink(folder / "again.toml"));
+}
+
+TEST(WholeFileTest, AReplacedFileKeepsItsMode) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "file";
+  for (const fs::perms mode : {fs::perms(0600), fs::perms(0664), fs::perms(0755)}) {
+    std::ofstream(file) << "old";
+    fs::permissions(file, mode);
+    write_whole(file, "new");
+    EXPECT_EQ(file_text(file), "new");
+    EXPECT_EQ(fs::status(file).permissions(), mode);
+  }
+}
+
+TEST(WholeFileTest, AReplacedFileIsPrivateUntilItIsThere) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "file") << "old";
+  fs::permissions(folder / "file", fs::perms(0640));
+  WholeFile whole(folder / "file", true);
+  EXPECT_EQ(fs::status(whole.part()).permissions() & fs::perms(0077), fs::perms::none);
+  whole.finish();
+  EXPECT_EQ(fs::status(folder / "file").permissions(), fs::perms(0640));
+}
+
+}  // namespace
+}  // namespace haptrial
