@@ -130,9 +130,12 @@ void SessionNotices::say_plan(const protocols::Extent& extent, int defined, int 
 
 void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const {
   const double minutes = 1e-9 / 60.0 * static_cast<double>(p_.loop.elapsed_ns());
-  const std::string which =
-      trial.practice ? fmt::format("practice {}", trial.trial)
-                     : fmt::format("trial {} of {}", trial.trial, p_.controller.status().trials);
+  const int planned = p_.controller.status().trials;
+  // A trial that was aborted comes again under a new number.
+  const std::string which = trial.practice ? fmt::format("practice {}", trial.trial)
+                            : trial.trial > planned
+                                ? fmt::format("trial {}", trial.trial)
+                                : fmt::format("trial {} of {}", trial.trial, planned);
   tell(fmt::format("{}, {}: {}, {:.1f} min after the start", which, short_numbers(trial.condition),
                    how, minutes));
 }

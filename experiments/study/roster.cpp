@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <map>
 #include <set>
 #include <tuple>
@@ -82,9 +84,19 @@ std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>
   return found;
 }
 
-/// Path as a shell takes it.
+/// Path as a shell takes it; between single quotes it reads nothing but those.
 std::string typed(const std::string& path) {
-  return path.find_first_of(" ()&;'") == std::string::npos ? path : fmt::format("\"{}\"", path);
+  const bool plain = std::ranges::all_of(path, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("._/+-:=@,%", c) != nullptr;
+  });
+  if (plain) {
+    return path;
+  }
+  std::string inside;
+  for (const char c : path) {
+    inside += c == '\'' ? "'\\''" : std::string(1, c);
+  }
+  return fmt::format("'{}'", inside);
 }
 
 class RosterMaker {

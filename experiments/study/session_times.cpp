@@ -38,7 +38,7 @@ bool was_ended(const record::SessionReader& session) {
 std::optional<SessionTimes> session_times(const std::vector<std::filesystem::path>& files,
                                           const protocols::Definition& definition) {
   SessionTimes times;
-  for (const std::filesystem::path& file : files) {
+  for (const std::filesystem::path& file : distinct_sessions(files).files) {
     const record::SessionReader session(file);
     if (session.info().pilot || is_declined(session) || was_ended(session)) {
       continue;

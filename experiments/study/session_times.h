@@ -19,8 +19,8 @@ struct SessionTimes {
   double longest{0.0};
 };
 
-/// Pages count only in sessions on the real clock; pilots and sessions that were declined or ended
-/// early do not count. @param files  of sessions of the definition
+/// Pages count only in sessions on the real clock; pilots, copies and sessions that were declined
+/// or ended early do not count. @param files  of sessions of the definition
 /// @returns nothing without a session
 /// @throws InputError for a file that cannot be read
 std::optional<SessionTimes> session_times(const std::vector<std::filesystem::path>& files,

@@ -374,6 +374,30 @@ TEST_F(RosterTest, TheCommandsThatItShowsAreGood) {
   }
 }
 
+TEST_F(RosterTest, AShellReadsTheFoldersOfTheCommandAsTheyAre) {
+  sessions_ = folder_ / "aus gabe $HOME `id` it's";
+  fs::create_directory(sessions_);
+  const std::string command = roster().next.front().command;
+  const auto done = test::run_command(command);
+  EXPECT_EQ(done.status, 0) << command << "\n" << done.errors;
+  EXPECT_TRUE(fs::exists(sessions_ / "P01-session-1.h5")) << command;
+}
+
+TEST_F(RosterTest, ACopyIsNotCountedAmongTheTimesOfSessions) {
+  record("P01", 1);
+  fs::copy_file(sessions_ / "P01-session-1.h5", sessions_ / "P01-session-1.recovered.h5");
+  const auto shown = haptrial("roster " + quoted(definition_) + " " + quoted(sessions_));
+  EXPECT_THAT(shown.output, HasSubstr(" in 1 session)"));
+}
+
+TEST_F(RosterTest, AHandIsLeftRightOrBoth) {
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  const auto refused = haptrial(run + " --handedness rihgt");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("--handedness is 'rihgt'; did you mean right?"));
+  EXPECT_THAT(roster().persons, IsEmpty());
+}
+
 TEST_F(RosterTest, TheSameAsATableAndAsNumbers) {
   record("P01", 1);
   record("P03", 1);

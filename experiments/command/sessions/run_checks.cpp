@@ -9,6 +9,7 @@
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/hdf5/session_target.h"
 #include "core/record/hdf5/session_writer.h"
@@ -207,6 +208,11 @@ void check_run_options(const RunOptions& options) {
         "--set is given without --pilot; sessions of a study have the keys of its definition");
   }
   check_link(options);
+  const std::vector<std::string> hands{"left", "right", "both"};
+  const std::string& hand = options.person.handedness;
+  if (!hand.empty() && std::ranges::find(hands, hand) == hands.end()) {
+    throw InputError(not_allowed("--handedness", fmt::format("'{}'", hand), hands));
+  }
   if (options.stream && options.stream_optional) {
     throw InputError(
         "--lsl and --lsl-optional are both given; leave out the one that is not meant");

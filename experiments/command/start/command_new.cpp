@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <string>
 
@@ -26,6 +28,15 @@ std::filesystem::path definition_file(const std::string& given) {
   if (file.extension() != ".toml" || file.stem().empty()) {
     throw InputError(fmt::format("FILE is '{}'; allowed: a name that ends in .toml", given));
   }
+  const bool plain = std::ranges::all_of(file.stem().string(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+  if (!plain) {
+    throw InputError(
+        fmt::format("FILE is '{}', whose name is to be that of the study; allowed: letters, "
+                    "digits, '-' and '_'",
+                    given));
+  }
   return file;
 }
 
@@ -33,7 +44,7 @@ int new_definition(const NewOptions& options) {
   const std::filesystem::path file = definition_file(options.file);
   const Example& example = example_named(options.from);
   const std::string text = renamed(example, file.stem().string());
-  const Experiment experiment = parse_experiment(text, file.string());  // the name may be none
+  const Experiment experiment = parse_experiment(text, file.string());
   WholeFile out(file);
   out.write(text);
   out.finish();

@@ -61,7 +61,7 @@ TEST(StartTest, ANewDefinitionIsReadyToRehearse) {
   refused("haptrial new mine.toml", "mine.toml: exists already");
   refused("haptrial new other --from wall_detecton", "did you mean wall_detection?");
   refused("haptrial new other --from stifness", "did you mean stiffness_discrimination?");
-  refused("haptrial new 'two words'", "allowed: letters, digits");
+  refused("haptrial new 'two words'", "FILE is 'two words', whose name is to be that of the study");
   refused("haptrial new mine.txt", "allowed: a name that ends in .toml");
   EXPECT_FALSE(fs::exists(folder / "other.toml"));
 }
