@@ -7,6 +7,7 @@ The studio of the folder STUDIES at PLAIN_URL has no CodeMirror. Leaves pictures
 status 0: all was as it should be.
 """
 
+import json
 import pathlib
 import re
 import sys
@@ -180,11 +181,24 @@ def other_programs(page, file):
     assert file.read_text() == original
 
 
+def texts_of_form(page):
+    'A text of one line is shown without its quotation marks, and one that begins with "[" is a text.'
+    for raw, text in (('"a \\"b\\" \\U0001F600"', 'a "b" \U0001F600'), ("'a \\'", "a \\"), ('""', ""),
+                      ('"""Eine "Pause"."""', 'Eine "Pause".'), ("'''it's'''", "it's"), ("[1, 2]", None)):
+        assert page.run("return unquoted(" + json.dumps(raw) + ")") == text, raw
+    write = lambda typed, node, was: page.run("return written(" + ", ".join(map(json.dumps, (typed, node, was))) + ")")
+    text, either = {"type": "string"}, {"anyOf": [{"type": "string"}, {"type": "array"}]}
+    assert write("[Danke] Ende", text, '"Ende"') == '"[Danke] Ende"'
+    assert write("Eine lange Pause.", text, '"""Eine Pause."""') == '"Eine lange Pause."'
+    assert write('["a"]', either, '"all"') == '["a"]'
+
+
 def by_form(page, folder):
     """An edit of the form is one edit of the text, which the text's undo takes back."""
     text = "return document.querySelector('.CodeMirror').CodeMirror.getValue()"
     before = page.run(text)
     wait("the form", lambda: there(page, "[id='form_design.participants']"))
+    texts_of_form(page)
     page.run("const group = document.getElementById('form_design.participants').closest('details');"
              "group.open = true")
     page.run("const field = document.getElementById('form_design.participants');"

@@ -18,14 +18,18 @@ const is_map = (node) => Boolean(node && typeof node.additionalProperties === "o
 const is_table = (node) => Boolean(node && (node.properties || is_map(node)));
 const is_number = (raw) => /^[-+]?\d[\d_]*(\.\d+)?(e[-+]?\d+)?$/i.test(raw);
 
-/// A text without its quotation marks; null for anything else.
+/// A text of one line without its quotation marks, one or three; null for anything else.
 function unquoted(raw) {
-  if (/^'[^'\n]*'$/.test(raw)) return raw.slice(1, -1);
-  if (!/^"[^\n]*"$/.test(raw)) return null;
-  try { return JSON.parse(raw); } catch { return null; }
+  const literal = raw.match(/^'''(.*)'''$/) || raw.match(/^'([^'\n]*)'$/);
+  if (literal) return literal[1];
+  const basic = raw.match(/^"""(.*)"""$/) || raw.match(/^"(.*)"$/);
+  if (!basic) return null;
+  const json = basic[1].replace(/\\U([0-9A-Fa-f]{8})|\\.|["\t]/g, (sign, code) => code ? String.fromCodePoint(parseInt(code, 16)) : sign === '"' ? '\\"' : sign === "\t" ? "\\t" : sign);
+  try { return JSON.parse('"' + json + '"'); } catch { return null; }
 }
 /// What is typed as a definition writes it. @param was  the value before
 function written(typed, node, was) {
+  if (takes(node, "string") && !takes(node, "number", "integer", "array", "boolean", "object")) return JSON.stringify(typed);
   const text = unquoted(was) !== null || !takes(node, "number", "integer", "array", "boolean");
   if (is_number(typed) && (takes(node, "number", "integer") || !text)) return typed;
   return text && !/^[[{]/.test(typed) || takes(node, "string") && !/^[[{"']/.test(typed) ? JSON.stringify(typed) : typed;
