@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "core/base/definition/given_values.h"
 #include "core/base/definition/table.h"
@@ -52,6 +54,51 @@ std::vector<std::vector<double>> crossed(const std::vector<std::vector<double>>&
     all = std::move(longer);
   }
   return all;
+}
+
+/// Sizes of groups with `all` participants in the proportion of those stated: whole ones by the
+/// largest remainders.
+std::vector<long> in_proportion(const std::vector<protocols::StudyGroup>& groups, long all) {
+  long stated = 0;
+  for (const protocols::StudyGroup& group : groups) {
+    stated += group.participants;
+  }
+  std::vector<long> sizes, remainders;
+  for (const protocols::StudyGroup& group : groups) {
+    sizes.push_back(all * group.participants / stated);
+    remainders.push_back(all * group.participants % stated);
+  }
+  for (long left = all - std::accumulate(sizes.begin(), sizes.end(), 0L); left > 0; --left) {
+    const auto next = std::ranges::max_element(remainders) - remainders.begin();
+    ++sizes[static_cast<std::size_t>(next)];
+    remainders[static_cast<std::size_t>(next)] = -1;
+  }
+  return sizes;
+}
+
+void add_sizes(const std::vector<protocols::StudyGroup>& groups, std::vector<GivenKey>& given) {
+  constexpr const char* kAll = "design.participants";
+  const auto size_of = [&given](const std::string& key) -> std::optional<long> {
+    const auto at = std::ranges::find(given, key, &GivenKey::key);
+    return at != given.end() ? std::optional(std::stol(at->value)) : std::nullopt;
+  };
+  const std::optional<long> all = size_of(kAll);
+  bool groups_vary = false;
+  long sum = 0;
+  for (const protocols::StudyGroup& group : groups) {
+    const std::optional<long> own = size_of("groups." + group.name);
+    groups_vary = groups_vary || own;
+    sum += own.value_or(group.participants);
+  }
+  if (groups_vary && !all) {
+    given.push_back({kAll, std::to_string(sum)});
+  }
+  if (all && !groups_vary) {
+    const std::vector<long> sizes = in_proportion(groups, *all);
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+      given.push_back({"groups." + groups[i].name, std::to_string(sizes[i])});
+    }
+  }
 }
 
 std::string name_of(const PowerPlan& plan, const std::vector<double>& levels) {
@@ -169,6 +216,7 @@ std::vector<NamedText> PowerQuestion::parts_of(const QuestionCell& cell) const {
     const bool own = plan.vary[i].key.starts_with("power.");
     (own ? asked : given).push_back({plan.vary[i].key, written(cell.levels[i])});
   }
+  add_sizes(groups, given);
   std::vector<NamedText> all = parts;
   all.back().text = with_values(all.back().text, all.back().file_name, asked);
   all.front().text = with_values(all.front().text, all.front().file_name, given);
@@ -213,6 +261,9 @@ PowerQuestion parse_question(const std::vector<NamedText>& parts, const fs::path
   Table root = experiment.definition->root();
   question.plan = read_power_plan(root);
   question.study = experiment.study;
+  if (experiment.definition->groups.front().participants > 0) {
+    question.groups = experiment.definition->groups;
+  }
   question.title = experiment.definition->name;
   question.fingerprint =
       fmt::format("{:016x}", Fnv1a().add(question.text).add(program_words()).value());

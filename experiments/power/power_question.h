@@ -8,6 +8,7 @@
 #include "core/base/definition/table.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/study.h"
+#include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 
@@ -29,10 +30,12 @@ struct PowerQuestion {
   std::filesystem::path folder;  // of the definition, for files that it names
   std::string title;
   const Study* study{nullptr};
-  std::vector<QuestionCell> cells;  // those without an effect first
-  std::string fingerprint;          // of the text and of this program
+  std::vector<protocols::StudyGroup> groups;  // with their sizes; none are stated: empty
+  std::vector<QuestionCell> cells;            // those without an effect first
+  std::string fingerprint;                    // of the text and of this program
 
-  /// The definition of a cell.
+  /// The definition of a cell. Groups and design.participants, which have to fit each other, do so
+  /// if one of them varies: groups in proportion, and participants as the sum of the groups.
   std::string text_of(const QuestionCell& cell) const;
   std::vector<NamedText> parts_of(const QuestionCell& cell) const;
 };

@@ -201,6 +201,69 @@ TEST(PowerQuestion, VariesKeysAndPutsNullCellsFirst) {
   check_watched(q);
 }
 
+constexpr const char* kGroupsOfTwo = R"([experiment]
+protocol = "trials"
+name = "two_groups"
+[design]
+participants = 24
+[groups]
+trained = 9
+control = 15
+[variables]
+extra = { from = "group", trained = "0.0", control = "0.0" }
+[fields.pull]
+type = "constant"
+force = [0.0, "-$level", 0.0]
+[[stages]]
+name = "feel"
+fields = ["pull"]
+until = { time = 1.0 }
+[response]
+question = "Did it pull?"
+choices = [{ value = "yes" }, { value = "no" }]
+[procedure]
+kind = "constant"
+variable = "level"
+unit = "N"
+levels = [0.05, 0.1, 0.15, 0.2, 0.3, 0.4]
+repetitions = 20
+counts = "$answer == 1"
+[observer]
+senses = "force"
+decides = "yes"
+criterion = { median = 0.17, spread = 0.3 }
+force_floor = 0.08
+[observer.actions]
+feel = { do = "hold" }
+[analysis]
+by = ["group"]
+tests = ["trained < control"]
+)";
+
+TEST(PowerQuestion, GroupsFollowTheParticipantsAndParticipantsTheGroups) {
+  const TemporaryFolder folder;
+  write_text(folder / "study.toml", kGroupsOfTwo);
+  const auto sizes_of = [&](const std::string& key, const std::string& values) {
+    const PowerQuestion q = question_of(
+        folder,
+        "[power]\ndefinition = \"study.toml\"\nwatch = \"threshold: planned trained < control, "
+        "Welch's t\"\n[power.responses]\nmet = \"$level\"\n[[power.vary]]\nkey = \"" +
+            key + "\"\nvalues = " + values + "\n");
+    std::vector<std::vector<int>> sizes;
+    for (const QuestionCell& cell : q.cells) {
+      const Experiment experiment = parse_experiment(q.parts_of(cell));
+      const protocols::Definition& d = *experiment.definition;
+      sizes.push_back({d.design.participants, d.groups[0].participants, d.groups[1].participants});
+    }
+    return sizes;
+  };
+  // 9 to 15 of 12: 4.5 and 7.5, whose remainders are equal; of 10: 3.75 and 6.25.
+  EXPECT_EQ(sizes_of("design.participants", "[24, 16, 12, 10]"),
+            (std::vector<std::vector<int>>{{24, 9, 15}, {16, 6, 10}, {12, 5, 7}, {10, 4, 6}}));
+  EXPECT_EQ(sizes_of("groups.trained", "[6, 12]"),
+            (std::vector<std::vector<int>>{{21, 6, 15}, {27, 12, 15}}));
+}
+
 TEST(PowerQuestion, AFullStudyIsAPartOfItsOwnUnlessABlockIsStated) {
   const TemporaryFolder folder;
   const std::string plan = "watch = \"drift over the trials\"\nreplications = 10\n";
