@@ -315,6 +315,31 @@ void warn_of_missing(ImportedStudy& study) {
   }
 }
 
+/// Warns of reaction times that nobody has, as of milliseconds under a name that says seconds.
+void warn_of_unit(ImportedStudy& study) {
+  constexpr double kLongest = 30.0;    // [s]
+  constexpr double kShortest = 0.020;  // [s]
+  std::vector<double> times;
+  for (const ImportedTrial& trial : study.trials) {
+    if (std::isfinite(trial.time)) {
+      times.push_back(trial.time);
+    }
+  }
+  if (times.empty()) {
+    return;
+  }
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::ranges::nth_element(times, middle);
+  if (*middle > kLongest || *middle < kShortest) {
+    const bool long_ones = *middle > kLongest;
+    study.warnings.push_back(
+        fmt::format("WARNING: half of the reaction times in {} are {} {:.3g} s; are these {}? "
+                    "--time-unit says the unit.",
+                    study.columns.time, long_ones ? "at least" : "at most", *middle,
+                    long_ones ? "milliseconds" : "seconds"));
+  }
+}
+
 /// PsychoPy writes a file for each session, and people seldom change its number.
 void refuse_twins(const ImportedStudy& study) {
   std::map<std::pair<std::string, int>, std::size_t> owner;
@@ -360,6 +385,7 @@ ImportedStudy read_trial_tables(const std::vector<fs::path>& files, const TrialC
   settle_factors(study);
   warn_of_alike_names(study);
   warn_of_missing(study);
+  warn_of_unit(study);
   refuse_twins(study);
   return study;
 }

@@ -177,6 +177,24 @@ TEST_F(ImportedTrialsTest, ParticipantsWithAlikeNamesAreSaid) {
               ElementsAre(HasSubstr("different participants: \"P01\", \"P1\", \"p1\"")));
 }
 
+TEST_F(ImportedTrialsTest, TimesThatNobodyHasAreSaid) {
+  const auto warnings_of = [&](const std::string& times, double unit) {
+    const std::string text = "subject,correct,rt\n" + times;
+    TrialColumns columns = guessed(text);
+    columns.time_unit = unit;
+    return read(text, columns).warnings;
+  };
+  const std::string milliseconds = "a,1,301\na,1,501\na,0,699\na,0,\n";
+  const std::string seconds = "a,1,0.301\na,1,0.501\na,0,0.699\n";
+  EXPECT_THAT(warnings_of(milliseconds, 1.0),
+              ElementsAre("WARNING: half of the reaction times in rt are at least 501 s; are these "
+                          "milliseconds? --time-unit says the unit."));
+  EXPECT_THAT(warnings_of(seconds, 1e-3),
+              ElementsAre(HasSubstr("are at most 0.000501 s; are these seconds?")));
+  EXPECT_THAT(warnings_of(milliseconds, 1e-3), IsEmpty());
+  EXPECT_THAT(warnings_of(seconds, 1.0), IsEmpty());
+}
+
 TEST_F(ImportedTrialsTest, AMistypedAnswerIsSaidWithTheGuessRate) {
   const std::string text =
       "subject,level,correct,answer,side\na,1,1,left,Up\na,2,0,right,up\na,3,1,Right,up\n";
