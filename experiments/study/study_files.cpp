@@ -379,11 +379,12 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
 }
 
 std::vector<std::string> participants_in_order(const std::vector<fs::path>& files) {
-  std::map<std::string, std::string> begun;  // by participant
+  std::map<std::string, std::pair<std::string, std::uint64_t>> begun;  // by participant
   for (const fs::path& file : files) {
     const record::SessionInfo info = record::SessionReader(file).info();
-    const auto [first, is_new] = begun.try_emplace(info.subject, info.start_utc);
-    first->second = std::min(first->second, info.start_utc);
+    const std::pair here(info.start_utc, info.participant_number);
+    const auto [first, is_new] = begun.try_emplace(info.subject, here);
+    first->second = std::min(first->second, here);
   }
   std::vector<std::string> order;
   for (const auto& [participant, start] : begun) {

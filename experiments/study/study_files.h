@@ -72,7 +72,8 @@ using ProtocolOf = std::function<const protocols::Protocol&(const record::Sessio
 StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots,
                        const ProtocolOf& protocol_of);
 
-/// The participants of session files in the order in which they began their first sessions.
+/// The participants of session files in the order in which they began their first sessions; those
+/// of an import, which begin together, by their numbers, which are places in the tables.
 std::vector<std::string> participants_in_order(const std::vector<std::filesystem::path>& files);
 
 }  // namespace haptrial::experiments

@@ -302,6 +302,57 @@ TEST_F(TrialsImportTest, AnAnalysisThatNothingJudgesIsRefused) {
   EXPECT_THAT(run_command(validate).output, Not(HasSubstr("nothing says")));
 }
 
+/// Names whose alphabet is their order, and others, give the same looks.
+TEST_F(TrialsImportTest, TheRuleThatEndsAStudyTakesTheOrderOfTheRows) {
+  test::write_text(folder_ / "rule.toml", R"([experiment]
+protocol = "trials"
+name = "imported"
+[design]
+participants = 20
+[factors]
+cond = ["a", "b"]
+[[blocks]]
+name = "trials"
+trials = 8
+[[stages]]
+name = "presented"
+until = { time = 0.0 }
+[[responses]]
+name = "answer"
+question = "answer"
+number = [-1000000000.0, 1000000000.0]
+[analysis]
+kind = "times"
+by = ["cond"]
+tests = ["a < b"]
+[analysis.sequential]
+rule = "group sequential"
+looks = [6, 20]
+error = 0.05
+)");
+  for (const int digits : {1, 2}) {
+    std::ofstream out(folder_ / "t.csv");
+    out << "participant,cond,rt_s\n";
+    for (int person = 1; person <= 10; ++person) {
+      for (int trial = 0; trial < 8; ++trial) {
+        const bool b = trial >= 4;
+        out << fmt::format(
+            "P{:0{}},{},{:.4f}\n", person, digits, b ? "b" : "a",
+            0.5 + 0.01 * (person * 7 % 5) + 0.003 * (trial % 4) + (b ? 0.02 * person : 0.0));
+      }
+    }
+    out.close();
+    const std::string study = path(fmt::format("study{}", digits));
+    const CommandResult made = run_command("haptrial import " + path("t.csv") + " --definition " +
+                                           path("rule.toml") + " --out " + study);
+    ASSERT_EQ(made.status, 0) << made.errors;
+    const CommandResult found = run_command("haptrial analyze " + study);
+    EXPECT_THAT(found.output, HasSubstr("a < b, after 6 of at most 20 participants: z 2.75, "));
+    const fs::path report = folder_ / fmt::format("study{}/report.md", digits);
+    EXPECT_THAT(test::read_text(report), HasSubstr("in the order of the tables' rows"));
+  }
+}
+
 TEST_F(TrialsImportTest, PlannedTestsNeedConditions) {
   test::write_text(folder_ / "t.csv",
                    "subject,speed,response,rt_ms\nP1,slow,a,400\nP1,slow,a,410\nP2,slow,b,390\n");

@@ -146,7 +146,7 @@ struct SessionInfo {
   bool pilot{false};                    // tried before the study: no part of it
   std::uint64_t session{1};             // of the participant, from 1: studies may take several days
   std::uint64_t participant_number{
-      0};  // that chose the orders, from 1; 0: not recorded, older file
+      0};  // that chose the orders, or place in imported tables, from 1; 0: not recorded
   Participant participant{};
 
   /// No two sessions have it in common: files with the same one are copies.

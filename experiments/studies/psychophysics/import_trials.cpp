@@ -121,7 +121,22 @@ void check_judged(const TrialsDefinition& d, const trials::TrialsPlan& plan,
   }
 }
 
-record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTrial& first) {
+/// When an import begins, and the places of its participants in the tables, from 1.
+struct ImportOrder {
+  std::string start_utc;
+  std::map<std::string, std::uint64_t> places;
+};
+
+ImportOrder order_of(const trials::ImportedStudy& study) {
+  ImportOrder order{fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr))), {}};
+  for (const trials::ImportedTrial& trial : study.trials) {
+    order.places.try_emplace(trial.participant, order.places.size() + 1);
+  }
+  return order;
+}
+
+record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTrial& first,
+                            const ImportOrder& order) {
   record::SessionInfo info;
   info.program_version = program_version();
   info.program_commit = program_commit();
@@ -131,7 +146,8 @@ record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTri
   info.device = "none";
   info.clock = "real";
   info.rate = d.rate;
-  info.start_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+  info.start_utc = order.start_utc;
+  info.participant_number = order.places.at(first.participant);
   info.simulated = first.simulated;
   info.session = static_cast<std::uint64_t>(first.session);
   return info;
@@ -184,11 +200,12 @@ ImportSummary import_trials(TrialsImport request) {
   check_judged(definition, plan, study.columns);
   const trials::ImportedNames names = names_of(definition, plan, study.columns);
   const Sessions sessions = sessions_of(study, definition);
+  const ImportOrder order = order_of(study);
   exchange::NewFolder out(request.out);
   for (const auto& [key, own] : sessions) {
     trials::write_imported(
         out.place(session_file_name(key.first, key.second, definition.sessions())),
-        info_of(definition, *own.front()), study, own, names,
+        info_of(definition, *own.front(), order), study, own, names,
         protocols::trials_protocol().tables());
   }
   out.write("study.toml", definition.text);

@@ -18,6 +18,8 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/record/read/imported.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/preview/trials_parts.h"
 #include "experiments/preview/tried_trial.h"
 #include "experiments/studies/psychophysics/file_quantities.h"
@@ -87,10 +89,15 @@ void check_planned(const trials::TrialsResult& result, std::vector<std::string>&
 /// Looks at the test that decides when the study ends.
 /// @throws InputError if the plan names a quantity that the results lack
 void add_sequential(const AnalysisRequest& request, const TrialsDefinition& definition,
-                    trials::TrialsResult& result) {
+                    trials::TrialsResult& result, std::vector<std::string>& remarks) {
   const analysis::AnalysisPlan& plan = result.plan.plan;
   if (!plan.sequential) {
     return;
+  }
+  if (!record::imported_from(record::SessionReader(request.files.files.front())).empty()) {
+    remarks.emplace_back(
+        "Nobody knows when participants of imported trials came: the rule that ends the study "
+        "takes them in the order of the tables' rows.");
   }
   if (trials::Quantity* decides = trials::compared_quantity(result.quantities, plan.sequential->of,
                                                             "analysis.sequential.of")) {
@@ -273,7 +280,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   check_planned(result, remarks);
   trials::keep_equivalence(result.quantities, plan.plan.beside);
   trials::separate_secondary(result.quantities, plan);
-  add_sequential(request, definition, result);
+  add_sequential(request, definition, result, remarks);
   result.page_scores = std::move(scores);
   result.title = definition.name;
   result.remarks = std::move(remarks);
