@@ -353,6 +353,26 @@ error = 0.05
   }
 }
 
+TEST_F(TrialsImportTest, SettingsNeedAProcedure) {
+  test::write_text(folder_ / "t.csv", "participant,level,answer\nP1,1,10.72\nP1,2,11.79\n");
+  ASSERT_EQ(run_command("haptrial import " + path("t.csv") + " --kind magnitude --out " +
+                        path("magnitudes"))
+                .status,
+            0);
+  std::string text = test::read_text(folder_ / "magnitudes/study.toml");
+  const std::string kind = "\"magnitude\"";
+  ASSERT_NE(text.find(kind), std::string::npos) << text;
+  test::write_text(folder_ / "set.toml",
+                   text.replace(text.find(kind), kind.size(), "\"adjustment\""));
+  const CommandResult run = run_command("haptrial import " + path("t.csv") + " --definition " +
+                                        path("set.toml") + " --out " + path("settings"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("set.toml: has no procedure"));
+  EXPECT_FALSE(fs::exists(folder_ / "settings"));
+  EXPECT_THAT(run_command("haptrial validate " + path("set.toml")).output,
+              HasSubstr("so that the report has no setting"));
+}
+
 TEST_F(TrialsImportTest, PlannedTestsNeedConditions) {
   test::write_text(folder_ / "t.csv",
                    "subject,speed,response,rt_ms\nP1,slow,a,400\nP1,slow,a,410\nP2,slow,b,390\n");
@@ -389,7 +409,12 @@ TEST_F(TrialsImportTest, AMistakeIsASentenceAndLeavesNothing) {
   EXPECT_THAT(refused("--guess 0.5"), HasSubstr("t.csv:3: level is 'two'; allowed: a finite"));
   EXPECT_THAT(refused("--only level=1"), HasSubstr("add --guess RATE, as 0.5"));
   EXPECT_THAT(refused("--column right=correct"), HasSubstr("--column is 'right=correct'"));
-  EXPECT_THAT(refused("--kind psychometrics --only level=1 --guess 0.5"), HasSubstr("kind"));
+  EXPECT_THAT(refused("--kind psychometrics --only level=1 --guess 0.5"),
+              HasSubstr("--kind is 'psychometrics'; did you mean psychometric?"));
+  for (const std::string kind : {"adjustment", "paired"}) {
+    EXPECT_THAT(refused("--only level=1 --kind " + kind),
+                HasSubstr("is stated by a definition, for --definition"));
+  }
   EXPECT_THAT(refused(fmt::format("--definition '{}/experiments/force_training.toml'",
                                   HAPTRIAL_SOURCE_DIR)),
               HasSubstr("allowed: protocol = \"trials\""));

@@ -11,6 +11,7 @@
 
 #include "analysis/psychophysics/exchange/field_text.h"
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/base/toml_text.h"
 
 namespace haptrial::analysis::trials {
@@ -18,11 +19,22 @@ namespace {
 
 constexpr std::size_t kMostChoices = 64;
 
-bool takes_numbers(const std::string& kind) { return kind == "magnitude" || kind == "adjustment"; }
+/// The kinds that need nothing but columns; others need procedures, items or movements, which a
+/// definition of one's own states.
+const std::vector<std::string>& column_kinds() {
+  static const std::vector<std::string> kinds{"psychometric", "detection", "identification",
+                                              "magnitude",    "times",     "none"};
+  return kinds;
+}
 
 std::string kind_of(const ImportedStudy& study, const ImportedAnalysis& analysis) {
   const TrialColumns& columns = study.columns;
   if (!analysis.kind.empty()) {
+    if (std::ranges::find(column_kinds(), analysis.kind) == column_kinds().end()) {
+      throw InputError(
+          not_allowed("--kind", fmt::format("'{}'", analysis.kind), column_kinds()) +
+          "; a kind that needs more than columns is stated by a definition, for --definition");
+    }
     return analysis.kind;
   }
   const bool judged = !columns.correct.empty() || !analysis.yes.empty();
@@ -76,7 +88,7 @@ std::string first_response(const ImportedStudy& study, const std::string& kind) 
   }
   std::string text =
       fmt::format("\n[[responses]]\nname = \"{0}\"\nquestion = \"{0}\"\n", kImportedAnswer);
-  if (takes_numbers(kind) || answers.empty()) {
+  if (kind == "magnitude" || answers.empty()) {
     const auto word = std::ranges::find_if_not(
         answers, [](const std::string& each) { return number_in(each).has_value(); });
     if (word != answers.end()) {

@@ -138,8 +138,8 @@ void add_import(CLI::App& app, int& status) {
   sub->add_option("--name", o.name, "Name of the study (default: imported)");
   sub->add_option(
       "--kind", o.kind,
-      "Kind of the analysis (default: psychometric with levels and right answers, times "
-      "without)");
+      "Kind of the analysis: psychometric, detection, identification, magnitude, times or none "
+      "(default: psychometric with levels and right answers, times without)");
   sub->add_option("--yes", o.yes, "Answer that counts 1 (default: the right one)");
   sub->add_option("--guess", o.guess,
                   "Guess rate of psychometric functions (default: 1 / number of answers)");

@@ -135,6 +135,16 @@ ImportOrder order_of(const trials::ImportedStudy& study) {
   return order;
 }
 
+/// @throws InputError for settings of procedures that the definition does not have
+void check_settings(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
+  if (plan.kind == trials::AnalysisKind::kAdjustment && d.tracks.empty()) {
+    throw InputError(
+        fmt::format("{}: has no procedure, whose levels an analysis of kind 'adjustment' takes for "
+                    "settings; state it, or analyse the answers as kind = \"magnitude\"",
+                    d.file_name));
+  }
+}
+
 record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTrial& first,
                             const ImportOrder& order) {
   record::SessionInfo info;
@@ -198,6 +208,7 @@ ImportSummary import_trials(TrialsImport request) {
   const TrialsDefinition& definition = stated_trials(experiment);
   const trials::TrialsPlan plan = plan_of(definition);
   check_judged(definition, plan, study.columns);
+  check_settings(definition, plan);
   const trials::ImportedNames names = names_of(definition, plan, study.columns);
   const Sessions sessions = sessions_of(study, definition);
   const ImportOrder order = order_of(study);
