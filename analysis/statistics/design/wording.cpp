@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace haptrial::analysis {
 namespace {
@@ -43,7 +44,17 @@ std::string p_value(double p) {
   if (p < 0.001) {
     return "p < 0.001";
   }
-  return p < 0.1 ? fmt::format("p = {:#.2g}", p) : fmt::format("p = {:.2f}", p);
+  if (p >= 0.1) {
+    return fmt::format("p = {:.2f}", p);
+  }
+  constexpr double kLevel = 0.05;
+  constexpr int kMostDigits = 12;
+  const auto text = [p](int digits) { return fmt::format("{:#.{}g}", p, digits); };
+  int digits = 2;
+  while (p != kLevel && digits < kMostDigits && std::stod(text(digits)) == kLevel) {
+    ++digits;  // a p on one side of the level does not read as the level
+  }
+  return "p = " + text(digits);
 }
 
 std::string mean_with_interval(const Defined<MeanInterval>& interval) {

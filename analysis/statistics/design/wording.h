@@ -18,7 +18,7 @@ namespace haptrial::analysis {
 /// Results in words, the same in the command's summary and in the report. What is not defined
 /// becomes "not defined, because ...".
 
-/// "p = 0.0123", "p < 0.001".
+/// "p = 0.012", "p < 0.001"; more digits if two would round to the level of 0.05: "p = 0.0499".
 std::string p_value(double p);
 /// "1.234, 95 % CI 1.1 to 1.3".
 std::string mean_with_interval(const Defined<MeanInterval>& interval);

@@ -288,6 +288,11 @@ TEST(Wording, RoundsForReaders) {
   EXPECT_EQ(p_value(0.00099), "p < 0.001");
   EXPECT_EQ(p_value(0.0123), "p = 0.012");
   EXPECT_EQ(p_value(0.5), "p = 0.50");
+  EXPECT_EQ(p_value(0.04987), "p = 0.0499");
+  EXPECT_EQ(p_value(0.049996), "p = 0.049996");
+  EXPECT_EQ(p_value(0.05), "p = 0.050");
+  EXPECT_EQ(p_value(0.0504), "p = 0.0504");
+  EXPECT_EQ(p_value(0.0506), "p = 0.051");
   EXPECT_EQ(counted(1, "pass"), "1 pass");
   EXPECT_EQ(counted(3, "pass"), "3 passes");
   EXPECT_EQ(quantity(Undefined{"of this"}, 1.0, "m"), "not defined, because of this");
