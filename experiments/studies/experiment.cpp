@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -18,6 +19,7 @@
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/button_uses.h"
+#include "protocols/definition/groups.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/languages.h"
 #include "protocols/definition/tutoring_warnings.h"
@@ -137,6 +139,8 @@ void warn_of_missing_axes(const protocols::Definition& d, std::vector<std::strin
 std::vector<std::string> warnings_of(const Experiment& experiment) {
   std::vector<std::string> warnings = experiment.definition->warnings();
   warn_of_missing_axes(*experiment.definition, warnings);
+  std::ranges::move(protocols::group_warnings(experiment.definition->groups),
+                    std::back_inserter(warnings));
   for (std::string& warning : protocols::button_warnings(*experiment.definition)) {
     warnings.push_back(std::move(warning));
   }

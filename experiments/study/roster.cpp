@@ -232,9 +232,8 @@ class RosterMaker {
   void add_groups() {
     for (const StudyGroup& group : d_.groups) {
       const std::string name = d_.groups.size() > 1 ? group.name : "";
-      roster_.groups.push_back(
-          {name, group.participants > 0 ? group.participants : d_.design.participants, 0, 0,
-           d_.sessions_of(name)});
+      roster_.groups.push_back({name, group.planned > 0 ? group.planned : d_.design.participants, 0,
+                                0, d_.sessions_of(name)});
     }
     std::map<int, std::string> holders;
     for (const RosterPerson& person : roster_.persons) {

@@ -12,6 +12,7 @@
 
 #include "core/base/alike_names.h"
 #include "core/base/counted.h"
+#include "core/base/definition/definition_changes.h"
 #include "core/base/error.h"
 #include "core/record/read/imported.h"
 #include "core/record/read/marked_trials.h"
@@ -339,11 +340,36 @@ std::vector<fs::path> files_of_one_study(const fs::path& folder,
   return files;
 }
 
+/// As many as a definition plans; 0 if it does not say so.
+static int planned_participants(const std::string& definition) {
+  static const std::vector<std::string> kKey{"design.participants"};
+  try {
+    const auto values = definition_values(definition, kKey);
+    return values.empty() ? 0 : std::stoi(values.begin()->second);
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+/// What the first file says, or the first of those with the most participants: a study may take
+/// further ones, whose groups the definitions before do not know.
+static record::SessionInfo first_of(const std::vector<fs::path>& files) {
+  record::SessionInfo first = record::SessionReader(files.front()).info();
+  for (const fs::path& file : files) {
+    record::SessionInfo info = record::SessionReader(file).info();
+    if (info.definition != first.definition &&
+        planned_participants(info.definition) > planned_participants(first.definition)) {
+      first = std::move(info);
+    }
+  }
+  return first;
+}
+
 StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& protocol_of) {
   const Sorted sorted = sorted_files(folder);
   StudyFiles study;
   study.files = taken(sorted, folder, pilots);
-  study.first = record::SessionReader(study.files.front()).info();
+  study.first = first_of(study.files);
   study.remarks = remarks_on_names(study.files);
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
     study.remarks.push_back(remark);

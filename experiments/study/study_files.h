@@ -61,7 +61,7 @@ bool is_declined(const record::SessionReader& reader);
 /// Sessions that belong to one study.
 struct StudyFiles {
   std::vector<std::filesystem::path> files;
-  record::SessionInfo first;         // of the first file: its definition is the study's
+  record::SessionInfo first;         // its definition, with the most participants, is the study's
   std::vector<std::string> remarks;  // sentences for the report
 };
 

@@ -164,8 +164,8 @@ bool Definition::is_led(int session, const GivenPlace& place) const {
   return session_plan(session).gives && is_given(tutoring.led, place);
 }
 
-void check_common(Table& root, const Definition& definition) {
-  check_group_sizes(root, definition.groups, definition.design.participants);
+void check_common(Table& root, Definition& definition) {
+  plan_further(root, definition.groups, definition.design.participants);
   Table envelope = root.table("envelope");
   if (definition.envelope.max_force > definition.device.max_force) {
     envelope.reject("max_force", fmt::format("{}", definition.envelope.max_force),

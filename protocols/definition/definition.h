@@ -145,8 +145,8 @@ struct Definition {
 /// own ways.
 void read_common(Table& root, std::string_view file_name, Definition& definition);
 
-/// Notes what no table can see alone.
-void check_common(Table& root, const Definition& definition);
+/// Notes what no table can see alone, and plans participants beyond the groups' sizes.
+void check_common(Table& root, Definition& definition);
 
 /// Notes codes of markers that are out of range or have two meanings; when all else is read.
 void check_markers(Table& root, const Definition& definition);

@@ -1,7 +1,10 @@
 #include "protocols/definition/groups.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <numeric>
 #include <optional>
 
 #include "core/base/definition/table.h"
@@ -21,6 +24,33 @@ std::optional<int> number_at_end(const std::string& subject) {
                                                     : std::optional<int>(std::stoi(digits));
 }
 
+/// The place of a participant's group. @param participant  from 0; the groups have sizes
+std::size_t group_at(const std::vector<StudyGroup>& groups, int participant) {
+  int stated = 0, unit = 0;
+  for (const StudyGroup& group : groups) {
+    stated += group.participants;
+    unit = std::gcd(unit, group.participants);
+  }
+  const bool further = participant >= stated;
+  int left = further ? (participant - stated) % (stated / unit) : participant;
+  std::size_t at = 0;
+  const auto size = [&] {
+    return further ? groups[at].participants / unit : groups[at].participants;
+  };
+  for (; left >= size(); ++at) {
+    left -= size();
+  }
+  return at;
+}
+
+int planned_in_all(const std::vector<StudyGroup>& groups) {
+  int all = 0;
+  for (const StudyGroup& group : groups) {
+    all += group.planned;
+  }
+  return all;
+}
+
 }  // namespace
 
 std::vector<StudyGroup> read_groups(Table& root) {
@@ -34,7 +64,8 @@ std::vector<StudyGroup> read_groups(Table& root) {
     table.describe(
         {name, "Participants of the group NAME, in the order of their numbers", "", true});
     const long count = table.integer(name, 1, kMost);
-    groups.push_back({name, static_cast<int>(count), name != kNovices});
+    const int size = static_cast<int>(count);
+    groups.push_back({name, size, name != kNovices, size});
   }
   if (groups.empty()) {
     root.reject("groups", "an empty table", "a group and its number of participants");
@@ -42,19 +73,39 @@ std::vector<StudyGroup> read_groups(Table& root) {
   return groups;
 }
 
-void check_group_sizes(Table& root, const std::vector<StudyGroup>& groups, int participants) {
-  int all = 0;
-  for (const StudyGroup& group : groups) {
-    if (group.participants == 0) {
-      return;  // none is stated, or wrongly
-    }
-    all += group.participants;
+void plan_further(Table& root, std::vector<StudyGroup>& groups, int participants) {
+  if (groups.empty() || std::ranges::any_of(groups, [](const StudyGroup& group) {
+        return group.participants == 0;
+      })) {
+    return;  // none is stated, or wrongly
   }
-  if (all != participants) {
+  const int all = planned_in_all(groups);
+  for (int further = all; further < participants; ++further) {
+    ++groups[group_at(groups, further)].planned;
+  }
+  if (all > participants) {
     root.reject("groups", fmt::format("has {} participants in all; make it {}, as in "
                                       "design.participants",
                                       all, participants));
   }
+}
+
+std::vector<std::string> group_warnings(const std::vector<StudyGroup>& groups) {
+  std::vector<std::string> further;
+  int first = 1;
+  for (const StudyGroup& group : groups) {
+    first += group.participants;
+    if (group.planned > group.participants) {
+      further.push_back(fmt::format("{} of {}", group.planned - group.participants, group.name));
+    }
+  }
+  if (further.empty()) {
+    return {};
+  }
+  return {fmt::format(
+      "design.participants is {}, and the groups have {}: participants from number {} on belong to "
+      "the groups in turn ({})",
+      planned_in_all(groups), first - 1, first, fmt::join(further, ", "))};
 }
 
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject) {
@@ -62,27 +113,19 @@ std::string group_of(const std::vector<StudyGroup>& groups, const std::string& s
     return groups.front().name;
   }
   const std::optional<int> number = number_at_end(subject);
-  int last = 0;
-  for (const StudyGroup& group : groups) {
-    last += group.participants;
-    if (number && *number >= 1 && *number <= last) {
-      return group.name;
-    }
+  if (const StudyGroup* group = number ? find_group(groups, *number - 1) : nullptr) {
+    return group->name;
   }
   throw InputError(
       fmt::format("participant {} belongs to no group; allowed: an identifier that ends in a "
                   "number from 1 to {}",
-                  subject, last));
+                  subject, planned_in_all(groups)));
 }
 
 const StudyGroup* find_group(const std::vector<StudyGroup>& groups, int participant) {
-  for (const StudyGroup& group : groups) {
-    if (participant >= 0 && participant < group.participants) {
-      return &group;
-    }
-    participant -= group.participants;
-  }
-  return nullptr;
+  return participant >= 0 && participant < planned_in_all(groups)
+             ? &groups[group_at(groups, participant)]
+             : nullptr;
 }
 
 std::string group_of(const std::vector<StudyGroup>& groups, int participant) {

@@ -12,8 +12,9 @@ namespace haptrial::protocols {
 /// A group of a study, in the order in which participants belong to them.
 struct StudyGroup {
   std::string name;
-  int participants{0};
-  bool expert{false};  // every group but one that is called novices
+  int participants{0};  // whose numbers follow those of the group before
+  bool expert{false};   // every group but one that is called novices
+  int planned{0};       // these, and further ones of the design
 
   bool operator==(const StudyGroup&) const = default;
 };
@@ -22,12 +23,19 @@ struct StudyGroup {
 /// number of participants, where the definition has no such table.
 std::vector<StudyGroup> read_groups(Table& root);
 
-/// Notes that the groups have more or fewer participants in all than the design.
-void check_group_sizes(Table& root, const std::vector<StudyGroup>& groups, int participants);
+/// Notes that the groups have more participants in all than the design. Participants whom the
+/// design has beyond them belong to the groups in turn, as many of each as its share of the stated
+/// sizes: with groups of 4 and 2 two of the first, one of the second, and so on. So a study takes
+/// further participants, and nobody changes the group.
+void plan_further(Table& root, std::vector<StudyGroup>& groups, int participants);
+
+/// A sentence on participants beyond the groups' sizes; nothing if there is none.
+std::vector<std::string> group_warnings(const std::vector<StudyGroup>& groups);
 
 /// The group of a participant from the number at the end of the identifier: participants 1 to n
-/// belong to the first group of n, those that follow to the next.
-/// @throws InputError for a number beyond the last group, or none where there are several groups.
+/// belong to the first group of n, those that follow to the next, and further ones as
+/// plan_further() says.
+/// @throws InputError for a number beyond those planned, or none where there are several groups.
 std::string group_of(const std::vector<StudyGroup>& groups, const std::string& subject);
 
 /// @param participant  from 0

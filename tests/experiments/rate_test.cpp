@@ -256,6 +256,29 @@ TEST(ContactSheet, PutsEveryPictureInItsPlace) {
   EXPECT_THROW(contact_sheet({}, 2, plain(1, 6)), std::invalid_argument);
 }
 
+/// Who has a number keeps the group, and further ones share the groups out as they are stated.
+TEST(StudyGroups, TakeFurtherParticipantsInTurn) {
+  const auto groups_of = [](int participants) {
+    Table root = Table::parse("[groups]\ntrained = 4\ncontrol = 2\n", "d.toml");
+    auto groups = protocols::read_groups(root);
+    protocols::plan_further(root, groups, participants);
+    root.finish();
+    std::string all;
+    for (int number = 1; number <= participants; ++number) {
+      all += group_of(groups, "P" + std::to_string(number)).front();
+    }
+    EXPECT_EQ(groups[0].planned, std::count(all.begin(), all.end(), 't'));
+    EXPECT_EQ(groups[1].planned, std::count(all.begin(), all.end(), 'c'));
+    EXPECT_THROW(group_of(groups, "P" + std::to_string(participants + 1)), InputError);
+    EXPECT_EQ(group_warnings(groups).size(), participants > 6 ? 1u : 0u);
+    return all;
+  };
+  EXPECT_EQ(groups_of(6), "ttttcc");
+  EXPECT_EQ(groups_of(7), "ttttcct");
+  EXPECT_EQ(groups_of(13), "ttttccttcttct");
+  EXPECT_THAT(message_of([&] { groups_of(5); }), HasSubstr("has 6 participants in all; make it 5"));
+}
+
 TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   const auto read = [](const char* text) {
     Table root = Table::parse(text, "d.toml");
@@ -265,7 +288,7 @@ TEST(StudyGroups, AreThoseOfTheDefinitionInItsOrder) {
   };
   const auto groups = read("[groups]\nsurgeons = 4\nresidents = 4\nnovices = 7\n");
   const std::vector<protocols::StudyGroup> expected{
-      {"surgeons", 4, true}, {"residents", 4, true}, {"novices", 7, false}};
+      {"surgeons", 4, true, 4}, {"residents", 4, true, 4}, {"novices", 7, false, 7}};
   EXPECT_EQ(groups, expected);
   EXPECT_EQ(group_of(groups, "S04"), "surgeons");
   EXPECT_EQ(group_of(groups, "S05"), "residents");

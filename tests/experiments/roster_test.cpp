@@ -297,6 +297,28 @@ TEST_F(RosterTest, WhatIsWrongIsSaid) {
               HasSubstr("was recorded with another definition"));
 }
 
+TEST_F(RosterTest, AStudyWithGroupsTakesFurtherParticipants) {
+  record("P01", 1);
+  std::string more = kGroups;
+  more.replace(more.find("participants = 6"), 16, "participants = 8");
+  test::write_text(definition_, more);
+  experiment_ = load_experiment(definition_);
+  const Roster now = roster();
+  EXPECT_EQ(now.groups[0].planned, 3);
+  EXPECT_EQ(now.groups[1].planned, 5);
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  const auto further = haptrial(run + " --subject P07 --session 1");
+  ASSERT_EQ(further.status, 0) << further.errors;
+  EXPECT_EQ(roster().persons.back().group, "left") << "left to right are 1 to 2";
+  EXPECT_EQ(haptrial(run + " --subject P09 --session 1").status, 2);
+  const auto valid = haptrial("validate " + quoted(definition_));
+  EXPECT_THAT(valid.output, HasSubstr("participants from number 7 on belong to the groups in turn "
+                                      "(1 of left, 1 of right)"));
+  const auto analysed = haptrial("analyze " + quoted(sessions_));
+  EXPECT_EQ(analysed.status, 0) << analysed.errors;
+  EXPECT_THAT(analysed.output, HasSubstr("2 of 8 planned participants have a session"));
+}
+
 TEST_F(RosterTest, RunWithoutASubjectTakesTheNextOne) {
   const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
   const auto first = haptrial(run);

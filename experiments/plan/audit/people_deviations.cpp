@@ -21,7 +21,7 @@ std::string lower(std::string text) {
 std::string planned_group(const StudyPlan& plan, const std::string& subject) {
   std::vector<protocols::StudyGroup> groups;
   for (const PlannedGroup& group : plan.groups) {
-    groups.push_back({group.name, group.participants, false});
+    groups.push_back({group.name, group.participants, false, group.participants});
   }
   try {
     return plan.groups.size() > 1 ? protocols::group_of(groups, subject) : "";

@@ -72,6 +72,12 @@ std::vector<PlannedGroup> planned_groups(const protocols::Definition& definition
   }
   std::vector<PlannedGroup> planned;
   for (const protocols::StudyGroup& group : definition.groups) {
+    if (group.planned != group.participants) {
+      throw InputError(fmt::format(
+          "{}: groups does not have the {} participants of design.participants; a plan states the "
+          "size of each group before the study",
+          definition.file_name, definition.design.participants));
+    }
     planned.push_back({group.name, group.participants, definition.sessions_of(group.name)});
   }
   return planned;
