@@ -129,6 +129,7 @@ void Channel::take(const Measured& sample) {
   row.values.fill(std::numeric_limits<double>::quiet_NaN());
   std::copy_n(sample.values.begin(), std::min(sample.values.size(), row.values.size()),
               row.values.begin());
+  compare_with_limit(row.values);
   if (!log_.push(row)) {
     ++no_room_;
   } else if (no_room_ > 0) {
@@ -137,6 +138,16 @@ void Channel::take(const Measured& sample) {
   state_.values = row.values;
   state_.time_ns = row.time_ns;
   show(true);
+}
+
+/// The servo thread sees only the newest of samples that come together.
+void Channel::compare_with_limit(std::span<const double> values) {
+  const auto beyond = std::ranges::find_if(
+      values, [this](double value) { return options_.limit && std::abs(value) > *options_.limit; });
+  if (beyond != values.end()) {
+    ++state_.beyond;
+    state_.beyond_value = static_cast<std::size_t>(beyond - values.begin());
+  }
 }
 
 void Channel::run() {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -25,7 +26,9 @@ struct ChannelState {
   bool live{false};  // data come
   bool lost{false};  // they came no more, or never within the patience
   std::array<double, kMostQuantities> values{};
-  std::int64_t time_ns{0};  // at which they were measured
+  std::int64_t time_ns{0};      // at which they were measured
+  std::uint64_t beyond{0};      // samples so far with a value beyond the limit
+  std::size_t beyond_value{0};  // of the last of them: its first quantity beyond the limit
 };
 
 /// A channel of a running session. A thread of its own opens the instrument, reads it and gives
@@ -73,6 +76,7 @@ class Channel final : private ChannelInbox {
   void run();
   bool open();
   void read();
+  void compare_with_limit(std::span<const double> values);
   void lose(const std::string& why);
   void come_back();
   void show(bool live);

@@ -173,22 +173,27 @@ void ChannelSet::take(std::int64_t time_ns) noexcept {
   for (Part& part : parts_) {
     const std::size_t count = part.options.plan.quantities.size();
     bool lost = false;
+    std::optional<std::size_t> beyond;
     if (part.channel) {
       const ChannelState& state = part.channel->newest();
       lost = state.lost;
       for (std::size_t i = 0; i < count; ++i) {
         values_[part.at + i] = state.live ? state.values[i] : kNone;
       }
+      if (std::exchange(part.judged, state.beyond) != state.beyond) {
+        beyond = state.beyond_value;
+      }
     } else if (!real_) {
       std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(part.at), count,
                   simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns)));
     }
-    judge(part, lost);
+    judge(part, lost, beyond);
   }
 }
 
 /// A value beyond its limit weighs more than a channel that is lost.
-void ChannelSet::judge(const Part& part, bool lost) noexcept {
+/// @param beyond  quantity of a sample since the last tick; the newest value is judged here
+void ChannelSet::judge(const Part& part, bool lost, std::optional<std::size_t> beyond) noexcept {
   if (lost && part.options.required && alarm_ == Alarm::kNone) {
     alarm_ = Alarm::kLost;
     sentence_ = part.lost.c_str();
@@ -196,12 +201,14 @@ void ChannelSet::judge(const Part& part, bool lost) noexcept {
   if (!part.options.limit || alarm_ == Alarm::kBeyond) {
     return;
   }
-  for (std::size_t i = 0; i < part.beyond.size(); ++i) {
+  for (std::size_t i = 0; i < part.beyond.size() && !beyond; ++i) {
     if (std::abs(values_[part.at + i]) > *part.options.limit) {
-      alarm_ = Alarm::kBeyond;
-      sentence_ = part.beyond[i].c_str();
-      return;
+      beyond = i;
     }
+  }
+  if (beyond) {
+    alarm_ = Alarm::kBeyond;
+    sentence_ = part.beyond[*beyond].c_str();
   }
 }
 

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -71,6 +72,7 @@ class ChannelSet {
     std::unique_ptr<ChannelTable> table;
     std::unique_ptr<Channel> channel;  // null on a simulated clock
     std::size_t at{0};                 // of its first value in values_
+    std::uint64_t judged{0};           // samples beyond the limit (ChannelState::beyond)
     bool missing{false};               // start() named it, and its loss is no news
     std::uint64_t next{0};             // simulated samples so far
     std::string lost;                  // sentences of its alarms
@@ -78,7 +80,7 @@ class ChannelSet {
   };
   void simulate(Part& part, std::int64_t now_ns,
                 const std::function<void(const record::Rows&)>& put);
-  void judge(const Part& part, bool lost) noexcept;
+  void judge(const Part& part, bool lost, std::optional<std::size_t> beyond) noexcept;
 
   std::vector<Part> parts_;
   bool real_;

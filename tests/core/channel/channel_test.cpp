@@ -217,6 +217,23 @@ TEST(ChannelTest, AMeasuredValueBeyondItsLimitIsAnAlarm) {
   EXPECT_STREQ(set.sentence(), "channel grip: force is beyond the limit of 5 N");
 }
 
+TEST(ChannelTest, EachOfSamplesThatComeTogetherIsComparedWithTheLimit) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip + "limit = 5.0\n"), {}, true);
+  set.start([] { return std::int64_t{0}; }, {});
+  set.begin();
+  for (const double force : {0.0, -95.0, 0.5}) {
+    instrument->give({{force, 1.0}});
+  }
+  wait_until([&] { return instrument->is_idle(); });
+  set.take(0);
+  EXPECT_EQ(set.values()[0], 0.5);
+  EXPECT_EQ(set.alarm(), Alarm::kBeyond);
+  EXPECT_STREQ(set.sentence(), "channel grip: force is beyond the limit of 5 N");
+  set.take(1);
+  EXPECT_EQ(set.alarm(), Alarm::kNone) << "one sample is one alarm";
+}
+
 TEST(ChannelTest, AnInstrumentThatDoesNotAnswerIsSaidAndRefusedWhereItIsNeeded) {
   play()->refuse("there is no /dev/ttyACM0");
   ChannelSet beside(read(kGrip), {}, true);
