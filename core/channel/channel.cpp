@@ -106,8 +106,11 @@ void Channel::show(bool live) {
 void Channel::take(const Measured& sample) {
   ChannelRow row;
   row.received_ns = now_();
-  heard_ns_ = row.received_ns;
-  heard_ = true;
+  useless_ = !is_useful(sample.values);
+  if (!useless_) {
+    heard_ns_ = row.received_ns;
+    heard_ = true;
+  }
   if (!reading_.load(std::memory_order_relaxed)) {
     return;
   }
@@ -130,6 +133,9 @@ void Channel::take(const Measured& sample) {
   std::copy_n(sample.values.begin(), std::min(sample.values.size(), row.values.size()),
               row.values.begin());
   compare_with_limit(row.values);
+  std::ranges::replace_if(
+      row.values, [](double value) { return std::isinf(value); },
+      std::numeric_limits<double>::quiet_NaN());
   if (!log_.push(row)) {
     ++no_room_;
   } else if (no_room_ > 0) {
@@ -137,7 +143,16 @@ void Channel::take(const Measured& sample) {
   }
   state_.values = row.values;
   state_.time_ns = row.time_ns;
-  show(true);
+  show(heard_ || lost_ns_ < 0);
+}
+
+/// A limit cannot judge a value that is no number, and a session that needs the channel has nothing
+/// from a sample without any.
+bool Channel::is_useful(std::span<const double> values) const {
+  const auto is_number = [](double value) { return std::isfinite(value); };
+  return options_.limit      ? std::ranges::all_of(values, is_number)
+         : options_.required ? std::ranges::any_of(values, is_number)
+                             : true;
 }
 
 /// The servo thread sees only the newest of samples that come together.
@@ -208,7 +223,7 @@ void Channel::read() {
     come_back();
   } else if (lost_ns_ < 0 && !source_->may_be_silent() &&
              1e-9 * static_cast<double>(now_() - heard_ns_) > options_.plan.patience) {
-    lose("no data come any more");
+    lose(useless_ ? "its values are no numbers any more" : "no data come any more");
   }
 }
 

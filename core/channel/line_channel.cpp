@@ -13,7 +13,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <span>
 #include <thread>
@@ -245,7 +244,7 @@ std::string_view without_blanks(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
 }
 
-/// A number as programs print it, whatever the locale; NaN for one that is not finite.
+/// A number as programs print it, whatever the locale; also "nan" and "inf".
 std::optional<double> printed_number(std::string_view text) {
   if (text.starts_with('+')) {
     text.remove_prefix(1);
@@ -255,7 +254,7 @@ std::optional<double> printed_number(std::string_view text) {
   if (error != std::errc{} || end != text.data() + text.size()) {
     return std::nullopt;
   }
-  return std::isfinite(number) ? number : std::numeric_limits<double>::quiet_NaN();
+  return number;
 }
 
 /// Numbers of a line, one a column. @returns whether it has as many columns, and numbers in those

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "core/channel/channel_set.h"
 #include "core/record/rows/common_tables.h"
@@ -225,13 +226,72 @@ TEST(ChannelTest, EachOfSamplesThatComeTogetherIsComparedWithTheLimit) {
   for (const double force : {0.0, -95.0, 0.5}) {
     instrument->give({{force, 1.0}});
   }
-  wait_until([&] { return instrument->is_idle(); });
+  wait_until([&] { return set.seen()[0].state.values[0] == 0.5; });
   set.take(0);
   EXPECT_EQ(set.values()[0], 0.5);
   EXPECT_EQ(set.alarm(), Alarm::kBeyond);
   EXPECT_STREQ(set.sentence(), "channel grip: force is beyond the limit of 5 N");
   set.take(1);
   EXPECT_EQ(set.alarm(), Alarm::kNone) << "one sample is one alarm";
+}
+
+TEST(ChannelTest, AnOverloadIsBeyondEveryLimitAndRecordedAsNoValue) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip + "limit = 5.0\n"), {}, true);
+  set.start([] { return std::int64_t{0}; }, {});
+  set.begin();
+  instrument->give({{-std::numeric_limits<double>::infinity(), 1.0}});
+  Kept kept;
+  wait_until([&] {
+    kept.take_from(set);
+    return kept.rows.size() == 1;
+  });
+  wait_until([&] {
+    set.take(0);
+    return set.alarm() == Alarm::kBeyond;
+  });
+  EXPECT_TRUE(std::isnan(kept.rows[0].values[0]));
+  EXPECT_TRUE(std::isnan(set.values()[0]));
+}
+
+TEST(ChannelTest, ASensorWithoutNumbersIsLostWhereSomebodyReliesOnThem) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  struct Case {
+    std::string keys;
+    std::vector<double> values;
+    bool lost;
+  };
+  for (const Case& each :
+       {Case{"limit = 5.0\n", {kNan, 1.0}, true}, Case{"required = true\n", {kNan, 1.0}, false},
+        Case{"required = true\n", {kNan, kNan}, true}, Case{"", {kNan, kNan}, false}}) {
+    const auto instrument = play();
+    ChannelSet set(read(kGrip + "patience = 0.1\n" + each.keys), {}, true);
+    std::atomic<std::int64_t> now{0};
+    set.start([&] { return now.load(); }, {});
+    set.begin();
+    instrument->give({{1.0, 1.0}});
+    Kept kept;
+    for (std::size_t i = 1; i <= 4; ++i) {
+      wait_until([&] {
+        kept.take_from(set);
+        return kept.rows.size() == i;
+      });
+      now = now + 50'000'000;
+      instrument->give({each.values});
+    }
+    wait_until([&] {
+      kept.take_from(set);
+      return kept.rows.size() == 5 && kept.has(Incident::kLost) == each.lost;
+    });
+    if (each.lost) {
+      EXPECT_THAT(set.take_news(), ElementsAre(HasSubstr("its values are no numbers any more")));
+      instrument->give({{1.0, 1.0}});
+      wait_until([&] {
+        kept.take_from(set);
+        return kept.has(Incident::kBack);
+      });
+    }
+  }
 }
 
 TEST(ChannelTest, AnInstrumentThatDoesNotAnswerIsSaidAndRefusedWhereItIsNeeded) {
