@@ -17,6 +17,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLook{20};  // for the end of the session, and for silence
 constexpr milliseconds kUntilBegin{1};
 constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
+constexpr double kSilence = 2.0;     // until a silent one is [s]
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
 constexpr double kKept = 4.0;        // for which the log has room [s]
 constexpr std::size_t kLeastBlocks = 16;
@@ -106,8 +107,8 @@ void Channel::show(bool live) {
 void Channel::take(const Measured& sample) {
   ChannelRow row;
   row.received_ns = now_();
-  useless_ = !is_useful(sample.values);
-  if (!useless_) {
+  arrived_ns_ = row.received_ns;
+  if (is_useful(sample.values)) {
     heard_ns_ = row.received_ns;
     heard_ = true;
   }
@@ -175,7 +176,7 @@ void Channel::run() {
     } else if (reading_.load(std::memory_order_relaxed) || !source_->keeps_samples()) {
       read();
     } else {
-      heard_ns_ = now_();
+      heard_ns_ = arrived_ns_ = now_();
       std::this_thread::sleep_for(kUntilBegin);
     }
   }
@@ -187,7 +188,7 @@ bool Channel::open() {
   try {
     source_ = options_.plan.open();
     clock_.restart();
-    heard_ns_ = now_();
+    heard_ns_ = arrived_ns_ = now_();
   } catch (const std::exception& error) {
     why = sentence_of(error);
   }
@@ -221,10 +222,19 @@ void Channel::read() {
   }
   if (heard_) {
     come_back();
-  } else if (lost_ns_ < 0 && !source_->may_be_silent() &&
-             1e-9 * static_cast<double>(now_() - heard_ns_) > options_.plan.patience) {
-    lose(useless_ ? "its values are no numbers any more" : "no data come any more");
+  } else if (!source_->may_be_silent() && time_since(heard_ns_) > options_.plan.patience) {
+    const double silence = time_since(arrived_ns_);
+    lose(silence > options_.plan.patience ? "no data come any more"
+                                          : "its values are no numbers any more");
+    if (source_->is_reopened_when_silent() &&
+        silence > std::max(kSilence, options_.plan.patience)) {
+      source_.reset();
+    }
   }
+}
+
+double Channel::time_since(std::int64_t time_ns) const {
+  return 1e-9 * static_cast<double>(now_() - time_ns);
 }
 
 void Channel::come_back() {

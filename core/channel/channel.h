@@ -77,6 +77,7 @@ class Channel final : private ChannelInbox {
   bool open();
   void read();
   bool is_useful(std::span<const double> values) const;
+  double time_since(std::int64_t time_ns) const;
   void compare_with_limit(std::span<const double> values);
   void lose(const std::string& why);
   void come_back();
@@ -92,10 +93,10 @@ class Channel final : private ChannelInbox {
   std::unique_ptr<ChannelSource> source_;
   SampleClock clock_;
   std::uint64_t next_;
-  std::int64_t heard_ns_{0};  // when useful data came last
-  bool heard_{false};         // they came in this reading; the session's clock may stand
-  bool useless_{false};       // the last sample was of no use
-  std::int64_t lost_ns_{-1};  // since when the channel is lost; -1: it is not
+  std::int64_t arrived_ns_{0};  // when a sample came last
+  std::int64_t heard_ns_{0};    // when a useful one came last
+  bool heard_{false};           // one came in this reading; the session's clock may stand
+  std::int64_t lost_ns_{-1};    // since when the channel is lost; -1: it is not
   ChannelState state_;
   std::uint64_t no_room_{0};  // samples for which the log had no room
 

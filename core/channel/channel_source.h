@@ -47,6 +47,9 @@ class ChannelSource {
   virtual void read(ChannelInbox& into, std::chrono::milliseconds patience) = 0;
   /// Whether silence is no loss, as of events; read() then throws when the instrument is lost.
   virtual bool may_be_silent() const { return false; }
+  /// Whether a silent instrument is opened anew, as one that may have restarted and waits for what
+  /// is sent at the opening. Sources that find out by themselves throw in read().
+  virtual bool is_reopened_when_silent() const { return false; }
   /// Whether samples wait for read() with their times. Others are read from the opening on, so that
   /// none of them is old when the session begins.
   virtual bool keeps_samples() const { return false; }

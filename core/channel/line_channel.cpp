@@ -354,6 +354,8 @@ class LineSource final : public ChannelSource {
     }
   }
 
+  bool is_reopened_when_silent() const override { return serial_ && !options_.start.empty(); }
+
  private:
   std::size_t place_of(const std::string& column) const {
     return static_cast<std::size_t>(std::ranges::find(options_.columns, column) -

@@ -244,6 +244,22 @@ TEST_F(LineChannelTest, AnInstrumentIsStartedFoundAgainAndStopped) {
   test::wait_until([&] { return heard() == "go\nhalt\n"; });
 }
 
+TEST_F(LineChannelTest, ABoardThatRestartedAndWaitsIsStartedAgain) {
+  const test::PseudoTerminal board;
+  test::ChannelRun run(definition(board.name(), "quantities = { a = \"1\" }\nstart = \"go\\n\""));
+  test::wait_until([&] { return board.heard().size() == 3; });
+  board.send("0\n1\n");
+  run.rows(1);
+  run.set_now(1.5);
+  EXPECT_THAT(run.incidents(Incident::kLost, 1)[0].text, HasSubstr("no data come any more"));
+  EXPECT_THAT(board.heard(), SizeIs(3)) << "it may be slow";
+  run.set_now(3.0);
+  test::wait_until([&] { return board.heard().size() == 6; });
+  board.send("0\n2\n");
+  EXPECT_EQ(run.rows(2)[1].values[0], 2.0);
+  run.incidents(Incident::kBack, 1);
+}
+
 TEST_F(LineChannelTest, AProgramThatEndsMayBeStartedAgain) {
   test::ChannelRun run(definition("quantities = { a = \"1\" }\nrate = 2"));
   EXPECT_EQ(run.options().plan.patience, 1.5) << "three lines";
