@@ -8,7 +8,7 @@ namespace haptrial::tutoring {
 using Eigen::Vector3d;
 using tutoring::Partner;
 
-static constexpr double kBackToOwnWorld = 0.05;  // after the link was lost [s]
+static constexpr double kBackToOwnWorld = 0.05;  // from the partner's after a loss [s]
 
 CoupledSide::CoupledSide(const SideParameters& parameters, const Vector3d& start)
     : p_(parameters),
@@ -43,7 +43,8 @@ void CoupledSide::look_at_link(std::int64_t now_ns, double dt) noexcept {
     ++losses_;
   }
   linked_ = heard;
-  strength_ = heard ? std::min(1.0, strength_ + dt / p_.ramp) : 0.0;
+  strength_ = heard ? std::min(1.0, strength_ + dt / p_.ramp)
+                    : std::max(0.0, strength_ - dt / kBackToOwnWorld);
   stead_ = std::min(stead_ + dt / kBackToOwnWorld, 1.0 - strength_);
 }
 
@@ -64,7 +65,7 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
   const tutoring::Lead lead{1.0 - own.lead, own.felt_back};
   const double share =  // of the coupling that is on
       strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
-  if (!linked_) {
+  if (strength_ <= 0.0) {
     tank_.let_go(moved, energy_heard_);
     return Vector3d::Zero();
   }

@@ -41,7 +41,8 @@ class CoupledSide {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the own tool, in W [N]
     std::optional<TickMessage> message;              // to send
   };
-  /// A tick, after what arrived before it was heard. Without a link the force is zero.
+  /// A tick, after what arrived before it was heard. Without a link the force
+  /// goes over 50 ms, as the own world comes back.
   Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
 
   /// Sets the force of the partner's world and the coupling that acts until the next tick, if

@@ -199,7 +199,7 @@ TEST(CoupledSideTest, TheSecondHandFollowsTheFirst) {
   EXPECT_LT(std::sqrt(off / size), 0.35);
 }
 
-TEST(CoupledSideTest, ALostLinkLetsGoInTheTickOfTheDeadlineAndComesBackByARamp) {
+TEST(CoupledSideTest, ALostLinkLetsGoOver50MsAfterTheDeadlineAndComesBackByARamp) {
   SideParameters p = stiff(Passivity::kTank);
   p.deadline = 0.1;
   p.ramp = 0.5;
@@ -208,14 +208,17 @@ TEST(CoupledSideTest, ALostLinkLetsGoInTheTickOfTheDeadlineAndComesBackByARamp) 
   for (int i = 0; i < 2000; ++i) {
     pair.tick(far, Vector3d::Zero());
   }
-  ASSERT_GT(pair.force_b.norm(), 0.1);
+  const double whole = pair.force_b.norm();
+  ASSERT_GT(whole, 0.1);
   pair.cut_there = true;
   int ticks = 0;
   while (!pair.force_b.isZero(0.0) && ticks < 1000) {
+    const Vector3d was = pair.force_b;
     pair.tick(far, Vector3d::Zero());
+    EXPECT_LT((pair.force_b - was).norm(), 0.05 * whole) << "a step of the force, tick " << ticks;
     ++ticks;
   }
-  EXPECT_EQ(ticks, 100);
+  EXPECT_NEAR(ticks, 149, 1);
   EXPECT_EQ(pair.second.losses(), 1u);
   EXPECT_TRUE(pair.first.linked()) << "the other way still works";
   for (int i = 0; i < 500; ++i) {
