@@ -37,6 +37,8 @@ DefinitionRules of_every_study() {
   for (const device::VendorDevice& vendor : device::vendor_devices()) {
     rules.free.emplace_back(vendor.table);
   }
+  // Measures and conditions are in these units; a sensor may be left out or take another's place.
+  rules.kept = {"channels.*.quantities", "channels.*.inputs.*.unit"};
   rules.ordered = {"groups"};  // the first participants belong to the first group
   return rules;
 }

@@ -18,9 +18,22 @@ namespace {
 constexpr const char* kAbsent = "absent";
 using Values = std::map<std::string, std::string>;  // by the key's full path
 
-/// Whether a key is that of a name, or in the table of that name.
+/// Whether a key is that of a name, or in the table of that name. '*' in the name is any part.
 bool is_within(std::string_view key, std::string_view name) {
-  return key == name || (key.starts_with(name) && key[name.size()] == '.');
+  const std::string_view part = name.substr(0, name.find('.'));
+  const std::string_view own = key.substr(0, key.find('.'));
+  if (part != "*" && part != own) {
+    return false;
+  }
+  if (part.size() == name.size()) {
+    return true;
+  }
+  return own.size() < key.size() &&
+         is_within(key.substr(own.size() + 1), name.substr(part.size() + 1));
+}
+
+bool is_one_of(std::string_view key, const std::vector<std::string>& names) {
+  return std::ranges::any_of(names, [&](const std::string& name) { return is_within(key, name); });
 }
 
 /// In one form: 1, 1.0 and 1e0 are the same number.
@@ -125,8 +138,7 @@ DefinitionChange change_of(const std::string& key, const std::string& was, const
 }  // namespace
 
 bool DefinitionRules::may_change(std::string_view key) const {
-  return std::any_of(free.begin(), free.end(),
-                     [&](const std::string& name) { return is_within(key, name); }) &&
+  return is_one_of(key, free) &&
          std::none_of(bound.begin(), bound.end(),
                       [&](const BoundKey& exception) { return is_within(key, exception.key); });
 }
@@ -135,6 +147,7 @@ void DefinitionRules::add(const DefinitionRules& more) {
   free.insert(free.end(), more.free.begin(), more.free.end());
   bound.insert(bound.end(), more.bound.begin(), more.bound.end());
   ordered.insert(ordered.end(), more.ordered.begin(), more.ordered.end());
+  kept.insert(kept.end(), more.kept.begin(), more.kept.end());
 }
 
 DefinitionChanges definition_changes(std::string_view before, std::string_view after,
@@ -163,7 +176,9 @@ DefinitionChanges definition_changes(std::string_view before, std::string_view a
     const std::string was = value_in(first, key);
     const std::string is = value_in(second, key);
     if (was != is) {
-      auto& into = rules.may_change(key) ? changes.free : changes.binding;
+      const bool is_another = was != kAbsent && is != kAbsent;
+      const bool may = rules.may_change(key) && !(is_another && is_one_of(key, rules.kept));
+      auto& into = may ? changes.free : changes.binding;
       into.push_back(change_of(key, was, is));
     }
   }

@@ -24,11 +24,13 @@ struct BoundKey {
 };
 
 /// Changes that sessions of one study may have, which the caller knows from the meaning of its
-/// tables. A key that no list has may not change, an unknown one neither.
+/// tables. A key that no list has may not change, an unknown one neither. '*' in a name is any part
+/// between two dots.
 struct DefinitionRules {
   std::vector<std::string> free{};  // tables with all they hold, "screen", and keys, "design.seats"
   std::vector<BoundKey> bound{};    // exceptions among them
   std::vector<std::string> ordered{};  // tables of the root in which the order of keys counts
+  std::vector<std::string> kept{};     // free keys that may come and go, but not have another value
 
   bool may_change(std::string_view key) const;
   /// Adds what other rules have.

@@ -100,6 +100,21 @@ TEST(StudyRulesTest, WhatIsPresentedRecordedOrScoredMayNotChange) {
   }
 }
 
+TEST(StudyRulesTest, AChannelMayBeWiredOtherwiseButKeepsItsUnits) {
+  const std::string grip = "[channels.grip]\nkind = \"line\"\n";
+  EXPECT_TRUE(between(grip + "path = \"/dev/ttyACM0\"\nquantities = { force = \"N\" }\n",
+                      grip + "path = \"/dev/ttyUSB1\"\nquantities = { force = \"N\" }\n")
+                  .same_study());
+  EXPECT_THAT(keys(between(grip + "quantities = { force = \"N\" }\n",
+                           grip + "quantities = { force = \"g\" }\n")
+                       .binding),
+              ElementsAre("channels.grip.quantities.force"));
+  EXPECT_THAT(keys(between("[channels.a]\ninputs.grip = { input = 0, unit = \"N\" }\n",
+                           "[channels.a]\ninputs.grip = { input = 2, unit = \"g\" }\n")
+                       .binding),
+              ElementsAre("channels.a.inputs.grip.unit"));
+}
+
 TEST(StudyRulesTest, TheOrderOfGroupsCounts) {
   EXPECT_FALSE(between("[groups]\na = 4\nb = 4", "[groups]\nb = 4\na = 4").same_study());
 }

@@ -57,6 +57,16 @@ TEST(DefinitionChangesTest, TablesAndKeysThatTheCallerNamesMayChange) {
   EXPECT_THAT(keys(strict.binding), ElementsAre("screen.monitor"));
 }
 
+TEST(DefinitionChangesTest, AKeptKeyMayComeAndGoButNotHaveAnotherValue) {
+  const DefinitionRules rules{.free = {"channels"}, .kept = {"channels.*.units"}};
+  const auto changes = definition_changes(
+      "[channels.a]\nport = 1\nunits.x = \"N\"\nunits.y = \"V\"\n[channels.b]\nunits.x = \"m\"\n",
+      "[channels.a]\nport = 2\nunits.x = \"g\"\n[channels.c]\nunits.x = \"m\"\n", rules);
+  EXPECT_THAT(keys(changes.binding), ElementsAre("channels.a.units.x"));
+  EXPECT_THAT(keys(changes.free), ElementsAre("channels.a.port", "channels.a.units.y",
+                                              "channels.b.units.x", "channels.c.units.x"));
+}
+
 TEST(DefinitionChangesTest, AKeyOfAFreeTableMayBeBound) {
   const auto changes = between("[machine]\nindex = 0\nwindow = 8\ndelay = 1\n",
                                "[machine]\nindex = 1\nwindow = 9\ndelay = 2\n");
