@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -259,7 +260,9 @@ std::string readme(std::span<const Session> sessions, double motion) {
       "code/              the definition of the experiment\n\n"
       "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
-      "the clock read. World frame: origin at the centre of the device's workspace, x to the\n"
+      "the clock read. A recording of a channel begins with the onset of each sample on the time\n"
+      "base of the events; its time_ns is the clock's. World frame: origin at the centre of the "
+      "device's workspace, x to the\n"
       "participant's right, y up, z towards the participant.{} Reals have 32 bits,\n"
       "as in the session files. Left out on purpose: consent and free notes about participants.\n"
       "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
@@ -386,13 +389,18 @@ std::string recording_sidecar(const Session& session, const WrittenSamples& samp
 }
 
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,
-                            const analysis::ChannelQuality& channel) {
+                            const analysis::ChannelQuality& channel,
+                            const WrittenSamples& samples) {
   Json json = task_json(session);
   json["SamplingFrequency"] = channel.rate();
-  json["StartTime"] = channel.first;
+  json["StartTime"] =
+      1e-9 * static_cast<double>(samples.even_time(std::llround(1e9 * channel.first)));
   json["Simulated"] = session.source.info.simulated;
   json["Columns"] = Json::array();
-  for (const ColumnDoc& doc : exchange::docs_of(table)) {
+  std::vector<ColumnDoc> columns{{"onset", "s", "of the sample, on the time base of the events"}};
+  const std::vector<ColumnDoc> own = exchange::docs_of(table);
+  columns.insert(columns.end(), own.begin(), own.end());
+  for (const ColumnDoc& doc : columns) {
     json["Columns"].push_back(doc.name);
     json[doc.name] = json_of(doc);
   }

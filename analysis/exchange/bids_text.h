@@ -49,8 +49,9 @@ std::string sidecar_of(const std::vector<ColumnDoc>& docs);
 /// The description of the task that every recording's sidecar has, as JSON.
 std::string described_task(const Session& session);
 std::string recording_sidecar(const Session& session, const WrittenSamples& samples);
-/// The sidecar of a channel's recording; its samples have the times of their columns.
+/// The sidecar of a channel's recording, whose samples have their times. @param samples  by whose
+/// even clock the onsets of samples are
 std::string channel_sidecar(const Session& session, const record::TableDescription& table,
-                            const analysis::ChannelQuality& channel);
+                            const analysis::ChannelQuality& channel, const WrittenSamples& samples);
 
 }  // namespace haptrial::exchange::bids

@@ -1,5 +1,6 @@
 #include "analysis/exchange/channel_text.h"
 
+#include <algorithm>
 #include <string>
 #include <variant>
 
@@ -17,11 +18,17 @@ std::vector<ColumnDoc> docs_of(const record::TableDescription& table) {
 }
 
 void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
-                   Delimited kind, bool headed, GzipFile& file) {
+                   Delimited kind, const WrittenSamples* ticks, GzipFile& file) {
   constexpr std::size_t kPiece = std::size_t{1} << 20;  // [bytes]
-  std::string text = headed ? heading(docs_of(table), kind) : "";
+  const std::vector<ColumnDoc> docs = docs_of(table);
+  const auto time =
+      static_cast<std::size_t>(std::ranges::find(docs, "time_ns", &ColumnDoc::name) - docs.begin());
+  std::string text = ticks == nullptr ? heading(docs, kind) : "";
   RowText row(text, kind);
   reader.each_row(table, [&](const std::vector<record::Cell>& cells) {
+    if (ticks != nullptr) {
+      row.add_seconds(ticks->even_time(std::get<std::int64_t>(cells.at(time))));
+    }
     for (const record::Cell& cell : cells) {
       std::visit([&](const auto& value) { row.add(value); }, cell);
     }

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
 
@@ -17,9 +18,11 @@ namespace haptrial::exchange {
 std::vector<ColumnDoc> docs_of(const record::TableDescription& table);
 
 /// Writes the samples of a channel, a row each with all columns of its table.
-/// @param table  of the channel, one of the reader's; @param headed  begins with the names
+/// @param table  of the channel, one of the reader's
+/// @param ticks  nothing: a heading and the columns; else no heading, and before the columns the
+///               time of each sample on the even clock of these ticks
 /// @throws InputError when the file is damaged, RunError when the disk is full
 void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
-                   Delimited kind, bool headed, GzipFile& file);
+                   Delimited kind, const WrittenSamples* ticks, GzipFile& file);
 
 }  // namespace haptrial::exchange

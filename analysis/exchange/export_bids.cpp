@@ -39,7 +39,7 @@ void write_stimuli(const NewFolder& out, const Session& session,
 /// Each channel is a continuous recording of its own. One that gave events alone has no rate and
 /// stays out.
 void write_channel_recordings(const NewFolder& out, const Session& session,
-                              const record::SessionReader& reader) {
+                              const record::SessionReader& reader, const WrittenSamples& samples) {
   for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
     if (channel.rate() <= 0.0) {
       continue;
@@ -48,9 +48,9 @@ void write_channel_recordings(const NewFolder& out, const Session& session,
     const std::string stem = fmt::format("{}/beh/{}_recording-{}_physio", session.folder(),
                                          session.stem(), bids_label(channel.name));
     GzipFile file(out.place(stem + ".tsv.gz"));
-    write_channel(reader, *table, Delimited::kTsv, false, file);
+    write_channel(reader, *table, Delimited::kTsv, &samples, file);
     file.close();
-    out.write(stem + ".json", bids::channel_sidecar(session, *table, channel));
+    out.write(stem + ".json", bids::channel_sidecar(session, *table, channel, samples));
   }
 }
 
@@ -64,7 +64,7 @@ WrittenSamples write_session(const NewFolder& out, const Session& session,
   WrittenSamples samples = write_samples(reader, Delimited::kTsv, file, counter);
   file.close();
   out.write(stem + "_physio.json", bids::recording_sidecar(session, samples));
-  write_channel_recordings(out, session, reader);
+  write_channel_recordings(out, session, reader, samples);
   const std::string events = bids::events_table(session, reader, samples, columns);
   out.write(stem + "_events.tsv", events);
   const bool moves = options.motion > 0.0 && samples.ticks > 0;

@@ -10,6 +10,7 @@
 #include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/other_devices.h"
+#include "analysis/exchange/pass_spans.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
@@ -122,17 +123,14 @@ void add_session(RowText& row, const ExportSession& s) {
   row.add(person.sex).add(person.handedness).add(person.age_band).end();
 }
 
-void add_pass(RowText& row, const ExportSession& s, std::size_t index,
-              const record::PassRow& pass) {
-  const bool any = pass.last_sample >= pass.first_sample;
-  const std::uint64_t ticks = any ? pass.last_sample - pass.first_sample + 1 : 0;
+void add_pass(RowText& row, const ExportSession& s, std::size_t index, const record::PassRow& pass,
+              const PassSpan& span) {
   row.add(s.info.subject).add(s.number).add(static_cast<std::uint64_t>(index)).add(pass.trial);
   row.add(pass.condition).add(record::name_of(pass.phase));
   row.add(pass.block).add(pass.repetition).add(pass.attempt).add(pass.practice ? 1 : 0);
   row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
   row.add(pass.stimulus_seed).add(pass.first_sample).add(pass.last_sample);
-  row.add(static_cast<double>(pass.first_sample) / s.info.rate);
-  row.add(static_cast<double>(ticks) / s.info.rate);
+  row.add(span.onset).add(span.duration);
   row.add(truth(s.info.simulated)).add(truth(s.info.pilot)).end();
 }
 
@@ -149,8 +147,10 @@ class Tables {
     RowText session_row(sessions, Delimited::kCsv);
     add_session(session_row, session);
     RowText pass_row(trials, Delimited::kCsv);
+    const std::vector<PassSpan> spans = pass_spans(reader);
     for (const auto& pass : reader.passes()) {
-      add_pass(pass_row, session, index_++, pass);
+      add_pass(pass_row, session, index_, pass, spans.at(index_));
+      ++index_;
     }
     passes += index_;
     index_ = 0;
@@ -314,7 +314,7 @@ void write_channels(const NewFolder& out, const record::SessionReader& reader,
                     const std::string& stem) {
   for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
     GzipFile file(out.place(fmt::format("channels/{}_{}.csv.gz", stem, channel.name)));
-    write_channel(reader, *reader.description("channel_" + channel.name), Delimited::kCsv, true,
+    write_channel(reader, *reader.description("channel_" + channel.name), Delimited::kCsv, nullptr,
                   file);
     file.close();
   }

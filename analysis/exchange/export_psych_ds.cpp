@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/data_set_sessions.h"
 #include "analysis/exchange/pass_facts.h"
+#include "analysis/exchange/pass_spans.h"
 #include "analysis/files/new_folder.h"
 #include "core/record/read/imported.h"
 #include "core/record/read/session_reader.h"
@@ -54,15 +56,13 @@ std::vector<ColumnDoc> pass_docs(const Levels& phases, const std::vector<ColumnD
 }
 
 void add_pass_cells(const Session& session, const record::PassRow& pass, std::size_t index,
-                    bool timed, RowText& row) {
+                    const std::optional<PassSpan>& span, RowText& row) {
   const ExportSession& source = session.source;
   row.add(source.info.subject).add(source.number);
   row.add(truth(source.info.simulated)).add(truth(source.info.pilot));
   row.add(static_cast<std::uint64_t>(index));
-  if (timed && pass.last_sample >= pass.first_sample) {
-    const double rate = source.info.rate;
-    row.add(static_cast<double>(pass.first_sample) / rate);
-    row.add(static_cast<double>(pass.last_sample - pass.first_sample + 1) / rate);
+  if (span && pass.last_sample >= pass.first_sample) {
+    row.add(span->onset).add(span->duration);
   } else {
     row.add_missing().add_missing();
   }
@@ -79,10 +79,11 @@ std::size_t write_pass_table(const NewFolder& out, const Session& session,
   const bool timed = record::imported_from(reader).empty();
   const PassFacts own = pass_facts(reader);
   const std::vector<record::PassRow> passes = reader.passes();
+  const std::vector<PassSpan> spans = pass_spans(reader);
   std::string text = heading(pass_docs({}, facts), Delimited::kCsv);
   RowText row(text, Delimited::kCsv);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    add_pass_cells(session, passes[i], i, timed, row);
+    add_pass_cells(session, passes[i], i, timed ? std::optional(spans.at(i)) : std::nullopt, row);
     for (const ColumnDoc& column : facts) {
       const auto cell = own.cells[i].find(column.name);
       row.add(cell != own.cells[i].end() ? cell->second : std::string());

@@ -14,6 +14,7 @@
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/other_devices.h"
 #include "analysis/exchange/pass_facts.h"
+#include "analysis/exchange/pass_spans.h"
 #include "analysis/files/new_folder.h"
 #include "analysis/files/xdf_file.h"
 #include "analysis/quality/channel_quality.h"
@@ -85,14 +86,9 @@ std::vector<double> values_of(const record::DeviceRow& row) {
 }
 
 /// Writes every tick of every device. @param stream  of the first device; those of the others
-/// follow it. @returns the times of the passes' first ticks [s]
-std::map<std::uint64_t, double> write_devices(const SessionReader& reader, XdfFile& file,
-                                              std::uint32_t stream, OtherDevices& others,
-                                              Counter& counter) {
-  std::map<std::uint64_t, double> begins;
-  for (const record::PassRow& pass : reader.passes()) {
-    begins[pass.first_sample] = static_cast<double>(pass.first_sample) / reader.info().rate;
-  }
+/// follow it.
+void write_devices(const SessionReader& reader, XdfFile& file, std::uint32_t stream,
+                   OtherDevices& others, Counter& counter) {
   const std::uint64_t rows = reader.sample_count();
   for (std::uint64_t row = 0; row < rows; row += kRowsAtOnce) {
     const std::uint64_t count = std::min(kRowsAtOnce, rows - row);
@@ -102,18 +98,14 @@ std::map<std::uint64_t, double> write_devices(const SessionReader& reader, XdfFi
         file.add(stream + static_cast<std::uint32_t>(other.device), seconds(sample.time_ns),
                  values_of(other));
       }
-      if (const auto begin = begins.find(sample.sequence); begin != begins.end()) {
-        begin->second = seconds(sample.time_ns);
-      }
     }
     counter.add(count);
     counter.check();
   }
-  return begins;
 }
 
 /// A pass as JSON, with what it presented and what was answered.
-std::string pass_text(const record::PassRow& pass, std::size_t index, double rate,
+std::string pass_text(const record::PassRow& pass, std::size_t index, double duration,
                       const std::map<std::string, std::string>& facts) {
   nlohmann::ordered_json json;
   json["pass"] = index;
@@ -124,22 +116,19 @@ std::string pass_text(const record::PassRow& pass, std::size_t index, double rat
   json["attempt"] = pass.attempt;
   json["practice"] = pass.practice;
   json["status"] = pass.status == record::PassStatus::kCompleted ? "completed" : "aborted";
-  json["duration"] = pass.last_sample < pass.first_sample
-                         ? 0.0
-                         : static_cast<double>(pass.last_sample - pass.first_sample + 1) / rate;
+  json["duration"] = duration;
   for (const auto& [name, value] : facts) {
     json[name] = value;
   }
   return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-void write_pass_markers(const SessionReader& reader, const std::map<std::uint64_t, double>& begins,
-                        XdfFile& file, std::uint32_t stream) {
+void write_pass_markers(const SessionReader& reader, XdfFile& file, std::uint32_t stream) {
   const PassFacts facts = pass_facts(reader);
   const std::vector<record::PassRow> passes = reader.passes();
+  const std::vector<PassSpan> spans = pass_spans(reader);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    file.add(stream, begins.at(passes[i].first_sample),
-             pass_text(passes[i], i, reader.info().rate, facts.cells[i]));
+    file.add(stream, spans.at(i).onset, pass_text(passes[i], i, spans[i].duration, facts.cells[i]));
   }
 }
 
@@ -197,7 +186,6 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
   const SessionReader reader(session.file);
   XdfFile file(path, about(session.info));
   std::size_t streams = 0;
-  std::map<std::uint64_t, double> begins;
   if (reader.sample_count() > 0) {
     OtherDevices others(reader);
     const std::uint32_t first = file.add_stream(device_stream(session.info));
@@ -205,11 +193,11 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
       file.add_stream(other_stream(session.info, number));
     }
     streams += 1 + others.count();
-    begins = write_devices(reader, file, first, others, counter);
+    write_devices(reader, file, first, others, counter);
   }
-  if (!begins.empty()) {
+  if (reader.sample_count() > 0 && !reader.passes().empty()) {
     ++streams;
-    write_pass_markers(reader, begins, file,
+    write_pass_markers(reader, file,
                        file.add_stream({"passes",
                                         "Markers",
                                         XdfFormat::kString,

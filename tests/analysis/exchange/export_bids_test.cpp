@@ -5,10 +5,13 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <vector>
 
 #include "analysis/exchange/bids_label.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/channel/channel_row.h"
+#include "core/record/hdf5/session_writer.h"
 #include "tests/analysis/exchange/small_session.h"
 #include "tests/support/temporary_folder.h"
 
@@ -134,6 +137,39 @@ TEST_F(ExportBidsTest, AfterASuspensionEventsStandBesideTheirTicks) {
   };
   EXPECT_NEAR(onset(400, 500'000'000), 1.0, 1e-5);
   EXPECT_NEAR(onset(500, 1'000'000'000), 1.0, 1e-5);
+}
+
+TEST_F(ExportBidsTest, AfterASuspensionSamplesOfChannelsStandBesideTheEvents) {
+  const channel::ChannelTable grip("grip", {{"force", "N"}}, 64);
+  record::SessionInfo info;
+  info.subject = "P01";
+  info.clock = "real";
+  info.rate = 500.0;
+  info.start_utc = "2026-11-20T09:30:00Z";
+  info.definition = "name = \"small\"\n";
+  info.definition_name = "small_study.toml";
+  record::SessionWriter writer(folder_ / "a.h5", info,
+                               {&grip.table(), &record::table_of<channel::IncidentRow>()});
+  std::vector<record::Sample> ticks(1000);  // suspended for a second after the first 500
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ticks[i].sequence = i;
+    ticks[i].time_ns = 2'000'000 * static_cast<std::int64_t>(i) + (i < 500 ? 0 : 1'000'000'000);
+    ticks[i].pass = -1;
+  }
+  writer.append(ticks);
+  std::vector<channel::ChannelRow> rows(2);
+  rows[0].time_ns = 500'000'000;
+  rows[1].time_ns = 2'500'000'000;
+  rows[1].sample = 1;
+  writer.add(record::Rows(grip.table(), rows.data(), rows.size()));
+  writer.set_timing({}, {1000, 0, 0});
+  writer.close();
+  files_ = {folder_ / "a.h5"};
+  run();
+  const fs::path recording =
+      folder_ / "out/sub-P01/beh/sub-P01_task-smallstudy_recording-grip_physio.tsv.gz";
+  ASSERT_EQ(shell("zcat" + quoted(recording) + " | cut -f 1,3"), 0) << output_;
+  EXPECT_EQ(output_, "0.5\t500000000\n1.5\t2500000000\n");
 }
 
 TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {

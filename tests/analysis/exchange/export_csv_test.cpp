@@ -153,6 +153,22 @@ std::vector<std::map<std::string, std::string>> rows_of(const fs::path& file) {
   return rows;
 }
 
+TEST(ExportCsvTest, AfterASuspensionOnsetsAreStillByTheClock) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5"};
+  write_session(files[0], {.gap_at = 2500, .gap = 5, .late_at = 1500, .late_ns = 2'000'000'000});
+  export_csv(files, folder / "out", {}, ignore);
+  const auto rows = rows_of(folder / "out/trials.csv");
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(std::stod(rows[0].at("duration")), 2.2);
+  EXPECT_EQ(std::stod(rows[1].at("onset")), 2.2);
+  EXPECT_EQ(std::stod(rows[1].at("duration")), 4.2) << "the loop was suspended for 2 s in it";
+  EXPECT_EQ(std::stod(rows[2].at("onset")), 6.4);
+  EXPECT_EQ(std::stod(rows[2].at("duration")), 2.21) << "five ticks are missing in it";
+  EXPECT_EQ(std::stod(rows[3].at("onset")), 8.61);
+  EXPECT_EQ(std::stod(rows[3].at("duration")), 2.2);
+}
+
 TEST(ExportCsvTest, SessionsSayWhoTookPartAndWhetherInAPilot) {
   const test::TemporaryFolder folder;
   const std::vector<fs::path> files{folder / "1.h5", folder / "2.h5"};
