@@ -184,6 +184,19 @@ void check_reach(const device::DeviceInfo& info, const protocols::Definition& d)
   check("workspace_radius", d.envelope.workspace_radius, info.workspace_radius, "m");
 }
 
+/// Reports and warnings take the figures of the certificate for those of the device.
+/// @throws InputError for a certificate of another device
+void check_certificate(const device::DeviceInfo& info, const protocols::Definition& d) {
+  if (d.certificate &&
+      (d.certificate->simulated != info.simulated || d.certificate->device != info.name)) {
+    throw InputError(fmt::format(
+        "{}: {} is the certificate of {}{}, and the session's device is {}; leave it out, or make "
+        "one of this device (haptrial device-test NAME --certificate FOLDER)",
+        d.file_name, d.certificate->file, d.certificate->device,
+        d.certificate->simulated ? " (simulated)" : "", info.name));
+  }
+}
+
 /// The window's pointer moves the first device alone; any other mouse would stand still.
 /// @throws InputError for a mouse or a game controller
 void check_pointer(const DeviceChoice& choice, const protocols::DeviceArm& arm,
@@ -285,6 +298,10 @@ std::unique_ptr<protocols::Rig> make_rig(
   std::unique_ptr<protocols::Rig> rig = open_rig(choices.front(), d, virtual_rig);
   if (rig->others().size() + 1 < d.arms().size()) {  // a virtual rig has all of them
     rig = with_others(std::move(rig), choices, d, virtual_rig);
+  }
+  const std::string& name = choices.front().name;
+  if (device::vendor_device(name) != nullptr || device::registered_device(name) != nullptr) {
+    check_certificate(rig->device().info(), d);
   }
   check_reach(rig->device().info(), d);
   for (const protocols::DeviceSet::Arm& arm : rig->others()) {

@@ -13,6 +13,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/file_text.h"
 #include "core/device/fault.h"
 #include "core/device/registered_devices.h"
 #include "core/record/read/integrity.h"
@@ -385,6 +386,25 @@ TEST_F(TwoDevicesStudyTest, TheNextSessionHasTheDevicesOfTheOneBefore) {
 TEST_F(TwoDevicesStudyTest, ADeviceWithoutAChoiceIsLikeTheOneBefore) {
   record("P01", {});
   EXPECT_THAT(next_command(), testing::HasSubstr(" --device circling --device circling --out "));
+}
+
+TEST_F(TwoDevicesStudyTest, ACertificateIsThatOfTheDevice) {
+  const auto refusal = [&](const char* name, bool simulated) {
+    test::write_text(folder_ / "arm.json",
+                     fmt::format(R"({{"certificate": 1, "device": "{}", "simulated": {}, )"
+                                 R"("summary": {{"findings": {{}}}}}})",
+                                 name, simulated));
+    test::write_text(folder_ / "certified.toml",
+                     file_text(folder_ / "two.toml") + "[device]\ncertificate = \"arm.json\"\n");
+    const Experiment certified = load_experiment(folder_ / "certified.toml");
+    const std::vector<DeviceChoice> choices{{"circling", "", 0}, {"circling", "", 0}};
+    return test::message_of<InputError>([&] { make_rig(choices, *certified.definition, nullptr); });
+  };
+  EXPECT_THAT(refusal("virtual", true),
+              testing::HasSubstr("arm.json is the certificate of virtual (simulated), and the "
+                                 "session's device is circling"));
+  EXPECT_THAT(refusal("circling", false), testing::HasSubstr("is the certificate of circling"));
+  EXPECT_EQ(refusal("circling", true), "nothing was thrown");
 }
 
 TEST_F(TwoDevicesStudyTest, ThePointerMovesTheFirstDeviceAlone) {
