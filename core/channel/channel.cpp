@@ -18,6 +18,7 @@ constexpr milliseconds kLook{20};  // for the end of the session, and for silenc
 constexpr milliseconds kUntilBegin{1};
 constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
 constexpr double kSilence = 2.0;     // until a silent one is [s]
+constexpr int kMostSteps = 10;       // of a clock, in samples in turn
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
 constexpr double kKept = 4.0;        // for which the log has room [s]
 constexpr std::size_t kLeastBlocks = 16;
@@ -115,13 +116,10 @@ void Channel::take(const Measured& sample) {
   if (!reading_.load(std::memory_order_relaxed)) {
     return;
   }
-  const bool timed = std::isfinite(sample.device_time);
+  const bool timed = std::isfinite(sample.device_time) && steps_ < kMostSteps;
   const SampleTime time = sample.time ? stamped(*sample.time, options_.plan.clock)
-                          : timed     ? clock_.time_of(sample.device_time, row.received_ns)
+                          : timed     ? clocked(sample, row.received_ns)
                                   : std::as_const(clock_).time_of(row.received_ns, sample.waited);
-  if (time.step != 0.0) {
-    note(Incident::kClockStep, time.step);
-  }
   if (sample.lost > 0) {
     note(Incident::kGap, static_cast<double>(sample.lost));
     next_ += sample.lost;
@@ -145,6 +143,20 @@ void Channel::take(const Measured& sample) {
   state_.values = row.values;
   state_.time_ns = row.time_ns;
   show(heard_ || lost_ns_ < 0);
+}
+
+/// The time by the instrument's clock. A clock that steps with every sample tells no time.
+SampleTime Channel::clocked(const Measured& sample, std::int64_t received_ns) {
+  const SampleTime time = clock_.time_of(sample.device_time, received_ns, sample.waited);
+  if (time.step == 0.0) {
+    steps_ = 0;
+  } else if (++steps_ < kMostSteps) {
+    note(Incident::kClockStep, time.step);
+  } else {
+    note(Incident::kClockStep, time.step,
+         "it steps with every sample, so that times are those of arrival; is its unit right?");
+  }
+  return time;
 }
 
 /// A limit cannot judge a value that is no number, and a session that needs the channel has nothing
@@ -188,6 +200,7 @@ bool Channel::open() {
   try {
     source_ = options_.plan.open();
     clock_.restart();
+    steps_ = 0;
     heard_ns_ = arrived_ns_ = now_();
   } catch (const std::exception& error) {
     why = sentence_of(error);

@@ -77,6 +77,7 @@ class Channel final : private ChannelInbox {
   bool open();
   void read();
   bool is_useful(std::span<const double> values) const;
+  SampleTime clocked(const Measured& sample, std::int64_t received_ns);
   double time_since(std::int64_t time_ns) const;
   void compare_with_limit(std::span<const double> values);
   void lose(const std::string& why);
@@ -92,6 +93,7 @@ class Channel final : private ChannelInbox {
   // The channel's thread.
   std::unique_ptr<ChannelSource> source_;
   SampleClock clock_;
+  int steps_{0};  // of its clock, in samples in turn; kMostSteps: it is no clock
   std::uint64_t next_;
   std::int64_t arrived_ns_{0};  // when a sample came last
   std::int64_t heard_ns_{0};    // when a useful one came last

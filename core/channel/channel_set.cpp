@@ -129,6 +129,8 @@ void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const rec
       const bool lost = row.what == Incident::kLost && !std::exchange(part.missing, false);
       if (lost) {
         news_.push_back(fmt::format("channel {} is lost: {}", row.channel, row.text));
+      } else if (row.what == Incident::kClockStep && !row.text.empty()) {
+        news_.push_back(fmt::format("the clock of channel {}: {}", row.channel, row.text));
       } else if (row.what == Incident::kBack) {
         news_.push_back(fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount));
       }

@@ -46,7 +46,7 @@ bool SampleClock::all_late(double excess, const Point& point) {
   return point.received - late_since_ >= kLateFor;
 }
 
-SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
+SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns, double waited) {
   double step = 0.0;
   if (!has_origin_) {
     has_origin_ = true;
@@ -77,6 +77,9 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns) {
   SampleTime time;
   time.time_ns = received_origin_ + std::llround(1e9 * measured);
   time.uncertainty = std::hypot(options_.latency_uncertainty, spread_ + drift);
+  if (lowest_.size() == 1) {  // the line may be as late as its only point
+    time.uncertainty = std::max(time.uncertainty, waited);
+  }
   if (late_since_ >= 0.0) {  // a delay, or a step that is not known yet
     time.uncertainty = std::max(time.uncertainty, point.received - line_at(point.device));
   }

@@ -35,7 +35,8 @@ class SampleClock {
 
   /// @param device_time  by the instrument's clock, in ascending order but for steps [s]
   /// @param received_ns  when it came, by the session's clock
-  SampleTime time_of(double device_time, std::int64_t received_ns);
+  /// @param waited  longest time that it may have lain there; the first samples are known no better
+  SampleTime time_of(double device_time, std::int64_t received_ns, double waited = 0.0);
   /// Time of a sample of an instrument without a clock. @param waited  longest time that it may
   /// have lain there before it was read [s]
   SampleTime time_of(std::int64_t received_ns, double waited) const;

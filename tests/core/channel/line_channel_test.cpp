@@ -203,6 +203,30 @@ TEST_F(LineChannelTest, ABoardThatBeginsAnewIsAStepOfItsClock) {
   EXPECT_NEAR(1e-9 * static_cast<double>(run.rows(2000).back().time_ns), truth.back(), 1e-3);
 }
 
+TEST_F(LineChannelTest, AClockInAnotherUnitIsSaidAndNotUsed) {
+  test::ChannelRun run(definition(R"(
+quantities = { grip = "N" }
+columns = ["millis", "grip"]
+clock = { column = "millis" }
+patience = 60)"));
+  const Printer printer(pipe_);
+  std::vector<double> truth;
+  for (int pack = 0; pack < 100; ++pack) {  // of eight lines, 2 ms from one to the next
+    std::string text;
+    for (int i = 0; i < 8; ++i) {
+      truth.push_back(1.0 + 0.016 * pack + 0.002 * i);
+      text += fmt::format("{:.0f},1\n", 1e6 * truth.back());  // microseconds
+    }
+    run.set_now(truth.back());
+    printer.print(text);
+    run.rows(truth.size());
+  }
+  EXPECT_GT(test::share_within(run.rows(truth.size()), truth), 0.95);
+  const auto steps = run.of_kind(Incident::kClockStep);
+  ASSERT_THAT(steps, SizeIs(10));
+  EXPECT_THAT(steps.back().text, HasSubstr("is its unit right?"));
+}
+
 TEST_F(LineChannelTest, ALineThatComesAgainIsLeftOut) {
   test::ChannelRun run(definition(kClocked));
   const Printer printer(pipe_);
