@@ -15,6 +15,7 @@ namespace haptrial::channel {
 /// One channel as its keys ask for it.
 struct ChannelPlan {
   std::vector<Quantity> quantities;  // 1 to kMostQuantities; none: the kind gives messages alone
+  std::string path{};                // of a line that one reader has alone; empty: none
   double rate{0.0};                  // samples a second, as far as it is known; 0: it is not [Hz]
   double patience{1.0};              // without data the channel is lost > 0 [s]
   ClockOptions clock;

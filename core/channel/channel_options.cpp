@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include "core/channel/channel_kinds.h"
 
@@ -70,6 +71,7 @@ bool is_name(std::string_view text) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
+constexpr const char* kEvents = "events";  // whose table is /channel_events
 constexpr const char* kNameForm = "a name of up to 40 letters, digits and '_'";
 
 std::vector<std::string> words() {
@@ -178,11 +180,20 @@ std::vector<ChannelOptions> read_channels(Table& root) {
   }
   Table all = root.table("channels");
   for (const std::string& name : all.keys_as_written()) {
-    if (!is_name(name)) {
-      all.reject(name, fmt::format("'{}'", name), kNameForm);
+    if (!is_name(name) || name == kEvents) {
+      all.reject(name, fmt::format("'{}'", name),
+                 fmt::format("{}, other than '{}'", kNameForm, kEvents));
     }
     Table table = all.table(name);
-    channels.push_back(read_channel(table, name));
+    ChannelOptions channel = read_channel(table, name);
+    const std::string& path = channel.plan.path;
+    const auto same = std::ranges::find_if(
+        channels, [&](const ChannelOptions& other) { return other.plan.path == path; });
+    if (!path.empty() && same != channels.end()) {
+      table.reject("path", fmt::format("\"{}\", as that of channel {}", path, same->name),
+                   "a line of its own: each of two readers gets half of what comes");
+    }
+    channels.push_back(std::move(channel));
   }
   if (channels.size() > kMostChannels) {
     root.reject("channels", fmt::format("{} channels", channels.size()),

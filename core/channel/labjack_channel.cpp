@@ -318,6 +318,7 @@ ChannelPlan read_labjack(Table& table) {
   }
   check_quantities(table, "inputs", plan.quantities);
   plan.rate = options.rate;
+  plan.patience = std::clamp(3.0 / options.rate, plan.patience, 60.0);
   plan.clock.latency_uncertainty = 0.1e-3;
   plan.open = [options] { return std::make_unique<LabJackSource>(options); };
   return plan;

@@ -449,6 +449,7 @@ ChannelKind line_channel() {
             const LineOptions options = line_schema().read(table);
             ChannelPlan plan;
             plan.quantities = options.quantities;
+            plan.path = options.path;
             plan.rate = options.rate;
             if (options.rate > 0.0) {
               plan.patience = std::clamp(3.0 / options.rate, plan.patience, 60.0);

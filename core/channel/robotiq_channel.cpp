@@ -195,6 +195,7 @@ ChannelPlan read_robotiq(Table& table) {
   ChannelPlan plan;
   plan.quantities = {{"fx", "N"},   {"fy", "N"},   {"fz", "N"},
                      {"tx", "N·m"}, {"ty", "N·m"}, {"tz", "N·m"}};
+  plan.path = options.path;
   plan.rate = kRobotiqRate;
   plan.clock.latency = 10.0 * kRobotiqFrame / kRobotiqBaud;  // ten bits a byte on the line
   plan.clock.latency_uncertainty = 10e-3;                    // the adapter's, and the sensor's
