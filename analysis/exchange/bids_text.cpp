@@ -324,7 +324,10 @@ std::string events_table(const Session& session, const record::SessionReader& re
         line_of(session, passes[i], i, samples.runs.at(i), blocks.contains(passes[i].block)));
     add_facts(facts.cells[i], columns, lines.back());
   }
-  for (const auto& event : reader.events()) {
+  std::vector<record::EventRow> events = reader.events();
+  const std::vector<record::EventRow> more = channel_events(reader, true);
+  events.insert(events.end(), more.begin(), more.end());
+  for (const auto& event : events) {
     lines.push_back(line_of(event, samples.even_time(event.time_ns)));
     add_facts({}, columns, lines.back());
   }

@@ -1,9 +1,12 @@
 #include "analysis/exchange/channel_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <variant>
 
+#include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/table/table_description.h"
 
@@ -39,6 +42,21 @@ void write_channel(const record::SessionReader& reader, const record::TableDescr
     }
   });
   file.write(text);
+}
+
+std::vector<record::EventRow> channel_events(const record::SessionReader& reader, bool messages) {
+  std::vector<record::EventRow> events;
+  if (!reader.has(record::table_of<channel::IncidentRow>())) {
+    return events;
+  }
+  for (const channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
+    if (messages || row.what != channel::Incident::kMessage) {
+      events.push_back({row.time_ns, fmt::format("channel_{}", channel::name_of(row.what)),
+                        fmt::format("{}{}{}{}", row.channel, row.text.empty() ? "" : ": ", row.text,
+                                    row.amount == 0.0 ? "" : fmt::format(" ({:g})", row.amount))});
+    }
+  }
+  return events;
 }
 
 }  // namespace haptrial::exchange

@@ -6,6 +6,7 @@
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
 class SessionReader;
@@ -24,5 +25,9 @@ std::vector<ColumnDoc> docs_of(const record::TableDescription& table);
 /// @throws InputError when the file is damaged, RunError when the disk is full
 void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
                    Delimited kind, const WrittenSamples* ticks, GzipFile& file);
+
+/// What befell the channels as events, such as "channel_lost" with "grip: no data come any more".
+/// @param messages  whether what the channels said is among them
+std::vector<record::EventRow> channel_events(const record::SessionReader& reader, bool messages);
 
 }  // namespace haptrial::exchange

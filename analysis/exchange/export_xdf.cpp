@@ -18,6 +18,7 @@
 #include "analysis/files/new_folder.h"
 #include "analysis/files/xdf_file.h"
 #include "analysis/quality/channel_quality.h"
+#include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {
@@ -132,8 +133,15 @@ void write_pass_markers(const SessionReader& reader, XdfFile& file, std::uint32_
   }
 }
 
-void write_events(const SessionReader& reader, XdfFile& file, std::uint32_t stream) {
+/// The events of a session and what befell its channels.
+std::vector<record::EventRow> all_events(const SessionReader& reader) {
   std::vector<record::EventRow> events = reader.events();
+  const std::vector<record::EventRow> more = channel_events(reader, false);
+  events.insert(events.end(), more.begin(), more.end());
+  return events;
+}
+
+void write_events(std::vector<record::EventRow> events, XdfFile& file, std::uint32_t stream) {
   std::ranges::stable_sort(events, {}, &record::EventRow::time_ns);
   for (const record::EventRow& event : events) {
     file.add(stream, seconds(event.time_ns),
@@ -151,6 +159,21 @@ double number_of(const record::Cell& cell) {
         }
       },
       cell);
+}
+
+/// What a channel said, each text at its time.
+void write_messages(const SessionReader& reader, const analysis::ChannelQuality& channel,
+                    XdfFile& file) {
+  const std::string name = channel.samples > 0 ? channel.name + "_messages" : channel.name;
+  const std::uint32_t stream =
+      file.add_stream({name, "Markers", XdfFormat::kString, 0.0, {{"message", ""}}});
+  std::vector<channel::IncidentRow> rows = reader.rows<channel::IncidentRow>();
+  std::ranges::stable_sort(rows, {}, &channel::IncidentRow::time_ns);
+  for (const channel::IncidentRow& row : rows) {
+    if (row.what == channel::Incident::kMessage && row.channel == channel.name) {
+      file.add(stream, seconds(row.time_ns), row.text);
+    }
+  }
 }
 
 /// One channel as a stream: all columns of its table but the time.
@@ -205,15 +228,19 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
                                         {{"pass", ""}},
                                         "a pass as JSON, as it began"}));
   }
-  if (!reader.events().empty()) {
+  if (const std::vector<record::EventRow> events = all_events(reader); !events.empty()) {
     ++streams;
-    write_events(reader, file,
+    write_events(events, file,
                  file.add_stream({"events", "Markers", XdfFormat::kString, 0.0, {{"event", ""}}}));
   }
   for (const analysis::ChannelQuality& channel : analysis::channel_quality(reader)) {
     if (channel.samples > 0) {
       ++streams;
       write_channel_stream(reader, channel, file);
+    }
+    if (channel.messages > 0) {
+      ++streams;
+      write_messages(reader, channel, file);
     }
   }
   file.close();

@@ -68,6 +68,7 @@ std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader)
     if (found != all.end()) {
       found->losses += row.what == channel::Incident::kLost ? 1 : 0;
       found->clock_steps += row.what == channel::Incident::kClockStep ? 1 : 0;
+      found->messages += row.what == channel::Incident::kMessage ? 1 : 0;
     }
   }
   return all;

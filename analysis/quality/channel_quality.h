@@ -17,6 +17,7 @@ struct ChannelQuality {
   std::uint64_t missing{0};         // that the instrument counted and that never came
   std::uint64_t losses{0};          // times that no data came any more
   std::uint64_t clock_steps{0};     // of the instrument's clock
+  std::uint64_t messages{0};        // texts that the instrument gave
   double first{0.0};                // time of the first sample, since the session's first tick [s]
   double seconds{0.0};              // from the first sample to the last
   double uncertainty{0.0};          // of the samples' times, median [s]

@@ -64,7 +64,9 @@ void print_channels(const record::SessionReader& reader) {
         c.samples == 0 ? ""
                        : fmt::format(", {:.1f} a second, times within {:.2f} ms (median)", c.rate(),
                                      1e3 * c.uncertainty);
-    fmt::print("channel     {}: {}{}, {} missing, {}, {} of its clock\n", c.name,
+    const std::string texts =
+        c.messages == 0 ? "" : fmt::format("{}, ", counted(c.messages, "message", "messages"));
+    fmt::print("channel     {}: {}{}{}, {} missing, {}, {} of its clock\n", c.name, texts,
                counted(c.samples, "sample", "samples"), times, c.missing,
                counted(c.losses, "loss", "losses"), counted(c.clock_steps, "step", "steps"));
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 
 #include "analysis/files/xdf_file.h"
@@ -165,6 +166,39 @@ TEST_F(ExportXdfTest, AChannelIsAStreamOfDoublesOnTheSessionsClock) {
     EXPECT_NEAR(theirs.time_stamps[i], 1e-9 * static_cast<double>(rows[i].time_ns), 1e-9);
     EXPECT_EQ(theirs.time_series.back()[i], static_cast<float>(rows[i].values[0]));
   }
+}
+
+TEST_F(ExportXdfTest, WhatAChannelSaidIsAStreamOfMarkers) {
+  const channel::ChannelTable stimuli("stimuli", {}, 64);
+  using channel::Incident;
+  const std::vector<channel::IncidentRow> rows{
+      {500'000'000, "stimuli", Incident::kMessage, 0.001, "cue left"},
+      {750'000'000, "stimuli", Incident::kLost, 0.0, "the sender has ended"},
+      {250'000'000, "stimuli", Incident::kMessage, 0.001, "fixation"}};
+  record::SessionInfo info;
+  info.subject = "P1";
+  info.clock = "simulated";
+  info.start_utc = "2026-11-20T09:30:00Z";
+  record::SessionWriter writer(folder_ / "a.h5", info,
+                               {&stimuli.table(), &record::table_of<channel::IncidentRow>()});
+  writer.add(std::span<const channel::IncidentRow>(rows));
+  writer.set_timing({}, {0, 0, 0});
+  writer.close();
+  files_ = {folder_ / "a.h5"};
+  EXPECT_EQ(export_xdf(files_, folder_ / "out", 1, ignore).streams, 2u);
+  const Xdf xdf = load(folder_ / "out/P1.xdf");
+  const auto time_of = [&](const std::string& wanted) {
+    for (const auto& [event, number] : xdf.eventMap) {
+      if (event.first == wanted) {
+        return event.second;
+      }
+    }
+    return -1.0;
+  };
+  EXPECT_NEAR(time_of("fixation"), 0.25, 1e-9);
+  EXPECT_NEAR(time_of("cue left"), 0.5, 1e-9);
+  EXPECT_NEAR(time_of("channel_lost: stimuli: the sender has ended"), 0.75, 1e-9);
+  EXPECT_EQ(stream(xdf, "stimuli").info.type, "Markers");
 }
 
 TEST_F(ExportXdfTest, SeveralSessionsHaveNumbers) {
