@@ -60,11 +60,11 @@ VectorXd step_from(const MatrixXd& wins, const VectorXd& worth, PairedModel mode
   return information.ldlt().solve(score);
 }
 
-/// Whether every item was chosen over every other, if not itself then by a chain of others: worths
-/// have an end exactly then (Ford 1957, American Mathematical Monthly 64).
-bool are_connected(const MatrixXd& wins) {
-  Eigen::ArrayXX<bool> over = wins.array() > 0.0;
-  const Eigen::Index n = wins.rows();
+/// Whether a chain of counts above 0 leads from every item to every other. Worths have an end
+/// exactly if one of choices does (Ford 1957, American Mathematical Monthly 64).
+bool are_connected(const MatrixXd& counts) {
+  Eigen::ArrayXX<bool> over = counts.array() > 0.0;
+  const Eigen::Index n = counts.rows();
   for (Eigen::Index by = 0; by < n; ++by) {
     for (Eigen::Index i = 0; i < n; ++i) {
       for (Eigen::Index k = 0; k < n; ++k) {
@@ -84,8 +84,12 @@ Defined<VectorXd> worths(const MatrixXd& given, PairedModel model, double added)
   if (n < 2) {
     return Undefined{"there are fewer than two items"};
   }
-  MatrixXd wins = given.array() + added;
-  wins.diagonal().setZero();
+  const MatrixXd presented = given + given.transpose();
+  if (!are_connected(presented)) {
+    return Undefined{"no chain of presented pairs links all items"};
+  }
+  // Choices that were added to other pairs would compare items that nobody compared.
+  const MatrixXd wins = (presented.array() > 0.0).select(given.array() + added, 0.0);
   if (!are_connected(wins)) {
     return Undefined{"the answers leave the worth of an item without an end"};
   }

@@ -16,11 +16,13 @@ enum class PairedModel : std::uint8_t {
 
 /// Worths of items from how often each was chosen over each, by maximum likelihood; their mean is
 /// 0.
-/// @param wins   (items x items) how often the row's item was chosen over the column's, >= 0
-/// @param added  choices of either item that each pair is given besides, >= 0: with 1/2, as in log
-///   odds of counts, nobody's worths are infinite, and few answers make them small
-/// @returns (items); undefined for fewer than two items, and where the answers leave worths without
-/// an end: an item, or several, that were always or never chosen over all others
+/// @param wins   (items x items) how often the row's item was chosen over the column's, >= 0; 0 on
+///   the diagonal
+/// @param added  choices of either item that each presented pair is given besides, >= 0: with 1/2,
+///   as in log odds of counts, nobody's worths are infinite, and few answers make them small
+/// @returns (items); undefined for fewer than two items, if no chain of presented pairs links them,
+/// and if the answers leave worths without an end: an item, or several, that were always or never
+/// chosen over all others
 Defined<Eigen::VectorXd> worths(const Eigen::MatrixXd& wins, PairedModel model, double added);
 
 }  // namespace haptrial::analysis

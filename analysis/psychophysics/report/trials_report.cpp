@@ -22,9 +22,9 @@ void add_paired_methods(Document& document, const PairedPlan& plan) {
   const bool odds = plan.model == PairedModel::kBradleyTerry;
   document.paragraph(fmt::format(
       "Worths are those of {}, fitted to the choices of each participant under a condition by "
-      "maximum likelihood; {} choice of either item was added to each pair, so that items that "
-      "were "
-      "always or never chosen have one. Their mean over a participant's items is 0.",
+      "maximum likelihood; {} choice of either item was added to each presented pair, so that "
+      "items that were always or never chosen have one. Their mean over the items is 0. Shares "
+      "chosen are those of participants to whom every pair was presented.",
       odds ? "the model of Bradley and Terry (1952), in log odds"
            : "Thurstone's case V (1927), in standard deviations of a difference",
       number(kAddedChoices)));

@@ -44,6 +44,7 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
         "{}: the answers of {} leave a side of the interval open; they are in no mean and no test",
         capitalized(q.title), fmt::join(q.open, ", ")));
   }
+  lines.insert(lines.end(), q.missing.begin(), q.missing.end());
 }
 
 using NamesByReason = std::map<std::string, std::vector<std::string>>;

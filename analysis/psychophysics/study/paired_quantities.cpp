@@ -1,5 +1,8 @@
 #include "analysis/psychophysics/study/paired_quantities.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <map>
 #include <set>
 #include <string>
@@ -7,6 +10,7 @@
 #include <utility>
 
 #include "analysis/psychophysics/fit/series.h"
+#include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -37,12 +41,16 @@ std::map<Condition, Wins> wins_of(const TrialsData& data, const TrialsPlan& plan
   return all;
 }
 
-std::vector<std::string> items_of(const Wins& wins) {
-  std::set<std::string> items;
-  for (const auto& [pair, count] : wins) {
-    items.insert(pair.first);
+/// The items that anybody met under a condition.
+std::map<std::vector<std::string>, std::set<std::string>> items_of(
+    const std::map<Condition, Wins>& all) {
+  std::map<std::vector<std::string>, std::set<std::string>> items;
+  for (const auto& [condition, wins] : all) {
+    for (const auto& [pair, count] : wins) {
+      items[condition.second].insert(pair.first);
+    }
   }
-  return {items.begin(), items.end()};
+  return items;
 }
 
 Eigen::MatrixXd counts_of(const Wins& wins, const std::vector<std::string>& items) {
@@ -58,30 +66,72 @@ Eigen::MatrixXd counts_of(const Wins& wins, const std::vector<std::string>& item
   return counts;
 }
 
+bool has_every_pair(const Eigen::MatrixXd& counts) {
+  Eigen::MatrixXd presented = counts + counts.transpose();
+  presented.diagonal().setOnes();
+  return presented.minCoeff() > 0.0;
+}
+
+/// Values of a quantity, and the participants under a condition who have none.
+struct Collected {
+  std::vector<QuantityValue> values;
+  std::map<std::string, std::vector<std::string>> missing;  // names by reason
+};
+
+void add_values(const Condition& condition, const std::vector<std::string>& items,
+                const Defined<Eigen::VectorXd>& values, Collected& to) {
+  if (!values) {
+    const std::string levels = fmt::format("{}", fmt::join(condition.second, ", "));
+    to.missing[values.because()].push_back(condition.first +
+                                           (levels.empty() ? std::string() : ", " + levels));
+    return;
+  }
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    std::vector<std::string> levels = condition.second;
+    levels.push_back(items[i]);
+    to.values.push_back({condition.first, levels, (*values)[static_cast<Eigen::Index>(i)]});
+  }
+}
+
+Defined<Eigen::VectorXd> shares_chosen(const Eigen::MatrixXd& counts) {
+  if (!has_every_pair(counts)) {
+    return Undefined{"not every pair of items was presented, so that shares have other opponents"};
+  }
+  const Eigen::VectorXd chosen = counts.rowwise().sum();
+  const Eigen::VectorXd other = counts.colwise().sum().transpose();
+  return Eigen::VectorXd(chosen.array() / (chosen + other).array());
+}
+
+Quantity with_reasons(Quantity result, const Collected& from) {
+  for (const auto& [because, names] : from.missing) {
+    result.missing.push_back(fmt::format("{}: no values of {}, because {}",
+                                         capitalized(result.title), fmt::join(names, "; "),
+                                         because));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan& plan) {
-  std::vector<QuantityValue> worth_values, share_values;
-  for (const auto& [condition, wins] : wins_of(data, plan)) {
-    const std::vector<std::string> items = items_of(wins);
+  Collected worth, share;
+  const auto all = wins_of(data, plan);
+  const auto items_under = items_of(all);
+  for (const auto& [condition, wins] : all) {
+    const std::set<std::string>& met = items_under.at(condition.second);
+    const std::vector<std::string> items(met.begin(), met.end());
     const Eigen::MatrixXd counts = counts_of(wins, items);
-    const auto worth = worths(counts, plan.paired.model, kAddedChoices);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const auto at = static_cast<Eigen::Index>(i);
-      std::vector<std::string> levels = condition.second;
-      levels.push_back(items[i]);
-      const double chosen = counts.row(at).sum();
-      share_values.push_back({condition.first, levels, chosen / (chosen + counts.col(at).sum())});
-      if (worth) {
-        worth_values.push_back({condition.first, levels, (*worth)[at]});
-      }
-    }
+    add_values(condition, items, worths(counts, plan.paired.model, kAddedChoices), worth);
+    add_values(condition, items, shares_chosen(counts), share);
   }
   const bool odds = plan.paired.model == PairedModel::kBradleyTerry;
-  return {quantity("worth", odds ? "worth in log odds" : "worth in standard deviations", "",
-                   worth_values, plan),
-          quantity("share_chosen", "share of trials in which it was chosen", "", share_values, plan,
-                   ValueRange::kShare)};
+  return {
+      with_reasons(quantity("worth", odds ? "worth in log odds" : "worth in standard deviations",
+                            "", worth.values, plan),
+                   worth),
+      with_reasons(quantity("share_chosen", "share of trials in which it was chosen", "",
+                            share.values, plan, ValueRange::kShare),
+                   share)};
 }
 
 }  // namespace haptrial::analysis::trials

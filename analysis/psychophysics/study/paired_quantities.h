@@ -7,12 +7,13 @@
 
 namespace haptrial::analysis::trials {
 
-/// Choices that each pair of items is given besides the answers, of either.
+/// Choices of either item that each presented pair is given besides the answers.
 inline constexpr double kAddedChoices = 0.5;
 
 /// Choices in pairs, tested between items: the worths of PairedPlan::model, and the share of the
 /// trials with an item in which it was chosen. A value is one participant's for an item under a
-/// condition. Only items that the participant met there have one.
+/// condition. Values compare only between the same items, all of those that anybody met there:
+/// worths need a chain of presented pairs that links them, shares the same opponents, every pair.
 std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan& plan);
 
 }  // namespace haptrial::analysis::trials

@@ -29,6 +29,7 @@ struct Quantity {
   std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open,
                                              // or values do not vary
   std::vector<std::string> open;             // participants with open values, who are left out
+  std::vector<std::string> missing;          // sentences: participants without a value, and why
   DesignTests tests;
   bool compared{false};  // there are at least two conditions
   bool headline{true};   // it stands on top of a report

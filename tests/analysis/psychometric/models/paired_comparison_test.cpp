@@ -49,6 +49,30 @@ TEST(PairedComparisonTest, AnItemThatAlwaysWinsHasNoEndUnlessChoicesAreAdded) {
   EXPECT_NEAR(added->sum(), 0.0, 1e-10);
 }
 
+/// Pairs of a chain are independent, so that each has the odds of its own choices.
+TEST(PairedComparisonTest, ChoicesAreAddedToPresentedPairsAlone) {
+  MatrixXd wins = MatrixXd::Zero(3, 3);
+  wins(0, 1) = 5.0;
+  wins(1, 0) = 15.0;
+  wins(1, 2) = 4.0;
+  wins(2, 1) = 16.0;
+  const auto found = worths(wins, PairedModel::kBradleyTerry, 0.5);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR((*found)[1] - (*found)[0], std::log(15.5 / 5.5), 1e-10);
+  EXPECT_NEAR((*found)[2] - (*found)[1], std::log(16.5 / 4.5), 1e-10);
+}
+
+TEST(PairedComparisonTest, ItemsThatNoChainOfPairsLinksHaveNoWorths) {
+  MatrixXd wins = MatrixXd::Zero(4, 4);
+  wins(0, 1) = wins(1, 0) = 3.0;
+  wins(2, 3) = wins(3, 2) = 5.0;
+  for (const double added : {0.0, 0.5}) {
+    const auto found = worths(wins, PairedModel::kBradleyTerry, added);
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.because(), "no chain of presented pairs links all items");
+  }
+}
+
 TEST(PairedComparisonTest, ManyChoicesFindTheWorthsOfASimulatedPerson) {
   const VectorXd truth = (VectorXd(5) << -1.2, -0.5, 0.0, 0.4, 1.3).finished();
   MatrixXd wins = MatrixXd::Zero(5, 5);

@@ -76,6 +76,34 @@ TEST(PairedQuantitiesTest, TestsKeepTheirLevel) {
   }
 }
 
+/// The mean over a participant's items is 0, so that worths of other items have another zero.
+TEST(PairedQuantitiesTest, ParticipantsWithoutAllItemsHaveNoValues) {
+  TrialsData data = indifferent(1);
+  std::erase_if(data.trials, [](const StudyTrial& trial) {
+    return trial.session == 3 && (trial.variables[0].word == "c" || trial.variables[1].word == "c");
+  });
+  const auto found = paired_quantities(data, paired_plan());
+  EXPECT_EQ(found[0].missing,
+            std::vector<std::string>{"Worth in log odds: no values of P3, because no chain of "
+                                     "presented pairs links all items"});
+  ASSERT_EQ(found[1].missing.size(), 1u);
+  for (const Quantity& each : found) {
+    EXPECT_EQ(each.table.means.size(), 9u);
+  }
+}
+
+TEST(PairedQuantitiesTest, SharesNeedTheSameOpponentsAndWorthsOnlyAChain) {
+  TrialsData data = indifferent(1);
+  std::erase_if(data.trials, [](const StudyTrial& trial) {
+    return trial.variables[0].word == "a" && trial.variables[1].word == "c";
+  });
+  const auto found = paired_quantities(data, paired_plan());
+  EXPECT_EQ(found[0].table.means.size(), 10u);
+  EXPECT_TRUE(found[0].missing.empty());
+  EXPECT_FALSE(found[1].compared);
+  EXPECT_EQ(found[1].missing.size(), 1u);
+}
+
 TEST(PairedQuantitiesTest, TrialsWithoutAnOutcomeAreCountedWithTheReason) {
   TrialsData data = indifferent(1);  // 180 trials
   for (std::size_t i = 0; i < 20; ++i) {
