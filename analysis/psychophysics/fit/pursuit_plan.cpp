@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/base/definition/schema.h"
 
@@ -28,6 +29,24 @@ void check_names(Table& table, const PursuitNames& names, PursuitPlan& plan) {
   }
   plan.number = static_cast<std::size_t>(target - names.targets.begin());
   plan.frequencies = target->frequencies;
+  plan.swing = target->frequencies;
+}
+
+/// Gain and lag exist only at frequencies that the target has.
+void check_frequencies(Table& table, PursuitPlan& plan) {
+  const std::vector<double> known = std::exchange(plan.swing, plan.frequencies);
+  for (const double frequency : plan.frequencies) {
+    if (!known.empty() && std::ranges::find(known, frequency) == known.end()) {
+      table.reject(
+          "frequencies", fmt::format("with {:g} Hz", frequency),
+          fmt::format("frequencies of the target {}: {:g}", plan.target, fmt::join(known, ", ")));
+    }
+  }
+  for (const double frequency : known) {
+    if (std::ranges::find(plan.frequencies, frequency) == plan.frequencies.end()) {
+      plan.swing.push_back(frequency);
+    }
+  }
 }
 
 }  // namespace
@@ -50,6 +69,7 @@ PursuitPlan read_pursuit_plan(Table& table, const PursuitNames& names) {
       .numbers("frequencies", &P::frequencies, {0.001, 20.0}, "Hz",
                "Frequencies at which gain and lag of a pursuit are found")
       .otherwise("the target's")
+      .check(check_frequencies)
       .read(table);
 }
 

@@ -29,6 +29,7 @@ struct PursuitPlan {
   std::size_t number{0};            // of the target in /targets
   double settle{2.0};               // from the stage's beginning, left out [s]
   std::vector<double> frequencies;  // at which the hand's response is found [Hz]
+  std::vector<double> swing;        // these and the target's others, which are fitted beside [Hz]
 };
 
 /// Reads the keys of [analysis] of kind "pursuit", all of which may be left out. Problems are

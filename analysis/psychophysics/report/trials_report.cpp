@@ -197,9 +197,9 @@ void add_methods(Document& document, const TrialsResult& result) {
     document.paragraph(fmt::format(
         "The tracking error of a pursuit is the root mean square distance of the hand from the "
         "target in the directions in which the target moves, without the first {:g} s. Gain and "
-        "lag are those of sines fitted to target and hand (least squares) along the direction in "
-        "which the target moves most; a participant's trials under a condition are averaged as "
-        "complex numbers.",
+        "lag are those of sines fitted beside a line in time to target and hand (least squares) "
+        "along the direction in which the target swings; a participant's trials under a condition "
+        "are averaged as complex numbers.",
         plan.pursuit.settle));
   }
   if (plan.kind == AnalysisKind::kProduced) {

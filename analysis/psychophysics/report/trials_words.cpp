@@ -44,7 +44,6 @@ void say_quantity(const TrialsResult& result, const Quantity& q, std::vector<std
         "{}: the answers of {} leave a side of the interval open; they are in no mean and no test",
         capitalized(q.title), fmt::join(q.open, ", ")));
   }
-  lines.insert(lines.end(), q.missing.begin(), q.missing.end());
 }
 
 using NamesByReason = std::map<std::string, std::vector<std::string>>;
@@ -334,6 +333,7 @@ std::vector<std::string> summary_lines(const TrialsResult& result) {
     if (q.headline && q.name != "log_width" && !result.cues) {  // beside cues, a table says it
       say_quantity(result, q, lines);
     }
+    lines.insert(lines.end(), q.missing.begin(), q.missing.end());
   }
   for (const Quantity& q : result.quantities) {
     add_tests(result, q, !result.cues, lines);

@@ -1,16 +1,19 @@
 #include "analysis/psychophysics/study/pursuit_quantities.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "analysis/psychophysics/data/trials_data.h"
 #include "analysis/psychophysics/fit/series.h"
+#include "analysis/statistics/design/wording.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/target_row.h"
@@ -28,27 +31,54 @@ Eigen::MatrixXd matrix_of(const Places& places) {
   return matrix;
 }
 
-/// A constant, and cosine and sine of each frequency.
+constexpr Eigen::Index kLine = 2;  // columns of the basis that are no sines
+
+/// A constant, a line, and cosine and sine of each frequency.
 Eigen::MatrixXd basis_of(Eigen::Index ticks, double rate, const std::vector<double>& frequencies) {
-  Eigen::MatrixXd basis(ticks, static_cast<Eigen::Index>(1 + 2 * frequencies.size()));
+  Eigen::MatrixXd basis(ticks, kLine + static_cast<Eigen::Index>(2 * frequencies.size()));
   for (Eigen::Index i = 0; i < ticks; ++i) {
     basis(i, 0) = 1.0;
+    basis(i, 1) = static_cast<double>(i) / static_cast<double>(ticks) - 0.5;
     for (std::size_t k = 0; k < frequencies.size(); ++k) {
       const double angle = 2.0 * M_PI * frequencies[k] * static_cast<double>(i) / rate;
-      basis(i, static_cast<Eigen::Index>(1 + 2 * k)) = std::cos(angle);
-      basis(i, static_cast<Eigen::Index>(2 + 2 * k)) = std::sin(angle);
+      basis(i, kLine + static_cast<Eigen::Index>(2 * k)) = std::cos(angle);
+      basis(i, kLine + static_cast<Eigen::Index>(2 * k) + 1) = std::sin(angle);
     }
   }
   return basis;
 }
 
 std::complex<double> amplitude(const Eigen::VectorXd& fitted, std::size_t k) {
-  return {fitted[static_cast<Eigen::Index>(1 + 2 * k)],
-          -fitted[static_cast<Eigen::Index>(2 + 2 * k)]};
+  return {fitted[kLine + static_cast<Eigen::Index>(2 * k)],
+          -fitted[kLine + static_cast<Eigen::Index>(2 * k) + 1]};
 }
 
 double variance(const Eigen::VectorXd& values) {
   return (values.array() - values.mean()).square().mean();
+}
+
+/// Root mean square distance in the directions in which the target moves.
+double tracking_error(const Eigen::MatrixXd& seen, const Eigen::MatrixXd& moved) {
+  const Eigen::MatrixXd centred = seen.rowwise() - seen.colwise().mean();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(centred.transpose() * centred);
+  constexpr double kMoves = 1e-6;  // share of the greatest variance with which a direction counts
+  const Eigen::MatrixXd error = moved - seen;
+  double square = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (spread.eigenvalues()[axis] > kMoves * spread.eigenvalues()[2]) {
+      square += (error * spread.eigenvectors().col(axis)).squaredNorm();
+    }
+  }
+  return std::sqrt(square / static_cast<double>(seen.rows()));
+}
+
+/// The hand's sines over the target's, where the target has any: its amplitude is more than a
+/// micrometre and far above what the sines leave of the target, which leaks into every frequency.
+std::complex<double> response_at(std::size_t k, const Eigen::VectorXd& of_target,
+                                 const Eigen::VectorXd& of_hand, double rest) {
+  const bool swings = std::abs(amplitude(of_target, k)) > std::max(1e-6, 100.0 * rest);
+  return swings ? amplitude(of_hand, k) / amplitude(of_target, k)
+                : std::complex<double>(kNotKnown, kNotKnown);
 }
 
 /// The pursuits of one session.
@@ -76,9 +106,8 @@ class SessionPursuits {
         hand.push_back(samples.at(static_cast<std::size_t>(row->sequence - first)).position);
       }
     }
-    return target.size() < 2
-               ? std::nullopt
-               : std::optional(pursuit_response(target, hand, rate, plan_.frequencies));
+    return target.size() < 2 ? std::nullopt
+                             : std::optional(pursuit_response(target, hand, rate, plan_.swing));
   }
 
  private:
@@ -93,36 +122,51 @@ struct Cell {
   std::vector<std::complex<double>> response;  // summed
 };
 
+/// A quantity, with the participants whose target did not swing as the analysis takes it to.
+Quantity pursuit_quantity(const std::string& name, const std::string& title,
+                          const std::string& unit, const std::vector<QuantityValue>& values,
+                          const TrialsPlan& plan, ValueRange range) {
+  Quantity made = quantity(name, title, unit, values, plan, range);
+  std::set<std::string> without;
+  for (const QuantityValue& each : values) {
+    if (!std::isfinite(each.value)) {
+      without.insert(each.participant);
+    }
+  }
+  if (!without.empty()) {
+    made.missing.push_back(fmt::format(
+        "{}: values of {} are missing, because the target's swing is no sum of sines of the "
+        "frequencies",
+        capitalized(made.title), fmt::join(without, ", ")));
+  }
+  return made;
+}
+
 std::vector<Quantity> quantities_of(
     const std::map<std::pair<std::string, std::vector<std::string>>, Cell>& cells,
     const TrialsPlan& plan) {
-  const auto values = [&](auto&& value) {
-    std::vector<QuantityValue> all;
+  std::vector<Quantity> all;
+  const auto add = [&](const std::string& name, const std::string& title, const std::string& unit,
+                       ValueRange range, auto&& value) {
+    std::vector<QuantityValue> values;
     for (const auto& [of, cell] : cells) {
-      all.push_back({of.first, of.second, value(cell)});
+      values.push_back({of.first, of.second, value(cell)});
     }
-    return all;
+    all.push_back(pursuit_quantity(name, title, unit, values, plan, range));
   };
   const std::vector<double>& frequencies = plan.pursuit.frequencies;
-  std::vector<Quantity> all{quantity("tracking_error", "tracking error", "m",
-                                     values([](const Cell& c) { return c.error / c.trials; }), plan,
-                                     ValueRange::kPositive)};
+  add("tracking_error", "tracking error", "m", ValueRange::kPositive,
+      [](const Cell& c) { return c.error / c.trials; });
   if (!frequencies.empty()) {
-    all.push_back(quantity("followed", "share of the movement that follows the target", "",
-                           values([](const Cell& c) { return c.followed / c.trials; }), plan,
-                           ValueRange::kShare));
+    add("followed", "share of the movement that follows the target", "", ValueRange::kShare,
+        [](const Cell& c) { return c.followed / c.trials; });
   }
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
     const std::string at = fmt::format("at {:g} Hz", frequencies[k]);
-    all.push_back(
-        quantity(fmt::format("gain_{:g}_hz", frequencies[k]), "gain " + at, "",
-                 values([&](const Cell& c) { return std::abs(c.response[k]) / c.trials; }), plan,
-                 ValueRange::kPositive));
-    all.push_back(quantity(fmt::format("lag_{:g}_hz", frequencies[k]), "lag " + at, "s",
-                           values([&](const Cell& c) {
-                             return -std::arg(c.response[k]) / (2.0 * M_PI * frequencies[k]);
-                           }),
-                           plan));
+    add(fmt::format("gain_{:g}_hz", frequencies[k]), "gain " + at, "", ValueRange::kPositive,
+        [&](const Cell& c) { return std::abs(c.response[k]) / c.trials; });
+    add(fmt::format("lag_{:g}_hz", frequencies[k]), "lag " + at, "s", ValueRange::kAny,
+        [&](const Cell& c) { return -std::arg(c.response[k]) / (2.0 * M_PI * frequencies[k]); });
   }
   for (std::size_t i = 1; i < all.size(); ++i) {
     all[i].headline = false;
@@ -135,31 +179,30 @@ std::vector<Quantity> quantities_of(
 PursuitResponse pursuit_response(const Places& target, const Places& hand, double rate,
                                  const std::vector<double>& frequencies) {
   const Eigen::MatrixXd seen = matrix_of(target), moved = matrix_of(hand);
-  const Eigen::MatrixXd centred = seen.rowwise() - seen.colwise().mean();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(centred.transpose() * centred);
-  constexpr double kMoves = 1e-6;  // share of the greatest variance with which a direction counts
-  const Eigen::MatrixXd error = moved - seen;
   PursuitResponse found;
-  double square = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (spread.eigenvalues()[axis] > kMoves * spread.eigenvalues()[2]) {
-      const Eigen::VectorXd beside = error * spread.eigenvectors().col(axis);
-      square += beside.squaredNorm();
-    }
-  }
-  found.error = std::sqrt(square / static_cast<double>(target.size()));
+  found.error = tracking_error(seen, moved);
   if (frequencies.empty()) {
     return found;
   }
-  const Eigen::Vector3d along = spread.eigenvectors().col(2);
   const Eigen::MatrixXd basis = basis_of(seen.rows(), rate, frequencies);
+  const auto line = basis.leftCols(kLine);
+  const auto sines = basis.rightCols(basis.cols() - kLine);
   const Eigen::HouseholderQR<Eigen::MatrixXd> solver(basis);
+  const Eigen::MatrixXd places = solver.solve(seen);  // (basis x 3)
+  const Eigen::MatrixXd swing = sines * places.bottomRows(sines.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread(swing.transpose() * swing);
+  const Eigen::Vector3d along = spread.eigenvectors().col(2);
   const Eigen::VectorXd shown = seen * along, followed = moved * along;
-  const Eigen::VectorXd of_target = solver.solve(shown), of_hand = solver.solve(followed);
-  const Eigen::VectorXd held = basis * of_hand;
-  found.followed = variance(held) / variance(followed);
+  const Eigen::VectorXd of_target = places * along, of_hand = solver.solve(followed);
+  const double rest =
+      std::sqrt((shown - basis * of_target).squaredNorm() / static_cast<double>(target.size()));
+  found.followed = variance(sines * of_hand.tail(sines.cols())) /
+                   variance(followed - line * of_hand.head(kLine));
   for (std::size_t k = 0; k < frequencies.size(); ++k) {
-    found.response.push_back(amplitude(of_hand, k) / amplitude(of_target, k));
+    found.response.push_back(response_at(k, of_target, of_hand, rest));
+    if (std::isnan(found.response.back().real())) {
+      found.followed = kNotKnown;
+    }
   }
   return found;
 }

@@ -11,16 +11,17 @@ namespace haptrial::analysis::trials {
 
 struct TrialsData;
 
-/// How a hand followed a target that moved.
+/// How a hand followed a target that moved. Numbers are NaN at frequencies that the target lacks.
 struct PursuitResponse {
   double error{0.0};     // root mean square of the distance, in the directions it moved in [m]
-  double followed{0.0};  // share of the hand's variance that the frequencies hold
+  double followed{0.0};  // share of the variance about the hand's drift that the frequencies hold
   std::vector<std::complex<double>> response;  // (frequencies) hand over target, exp(+iωt)
 };
 
-/// Both are fitted by a constant and sines of the frequencies (least squares), along the direction
-/// in which the target moved most.
+/// Target and hand are fitted by a line in time and sines of the frequencies (least squares), along
+/// the direction in which the target swings.
 /// @param target, hand  (ticks) places [m]; @param rate [Hz]
+/// @param frequencies  all of the target's: others would leak into these [Hz]
 PursuitResponse pursuit_response(const std::vector<Eigen::Vector3d>& target,
                                  const std::vector<Eigen::Vector3d>& hand, double rate,
                                  const std::vector<double>& frequencies);

@@ -288,5 +288,16 @@ TEST(TrialsPlanTest, ACovariateIsAScoreOfAPage) {
   EXPECT_THAT(problems_of("[analysis]\ncovariate = \"hands\"\n", d), HasSubstr("PAGE.SCORE"));
 }
 
+TEST(TrialsPlanTest, GainAndLagAreAtFrequenciesOfTheTarget) {
+  PlanDefaults d = defaults();
+  d.pursuit = {{"pursue"}, {{"circle", {0.1, 0.25, 0.55}}}};
+  const std::string pursuit = "[analysis]\nkind = \"pursuit\"\n";
+  EXPECT_THAT(read(pursuit, d).pursuit.swing, ElementsAre(0.1, 0.25, 0.55));
+  const PursuitPlan some = read(pursuit + "frequencies = [0.55, 0.1]\n", d).pursuit;
+  EXPECT_THAT(some.frequencies, ElementsAre(0.55, 0.1));
+  EXPECT_THAT(some.swing, ElementsAre(0.55, 0.1, 0.25));
+  EXPECT_THAT(problems_of(pursuit + "frequencies = [0.1, 0.4]\n", d), HasSubstr("0.1, 0.25, 0.55"));
+}
+
 }  // namespace
 }  // namespace haptrial::analysis::trials

@@ -39,6 +39,42 @@ TEST(PursuitResponseTest, GainAndLagAreThoseOfTheHand) {
   EXPECT_NEAR(found.error, std::sqrt(square), 1e-12);
 }
 
+/// The drift lies across the swing and is far larger than it; the hand is 0.2 s late in both.
+TEST(PursuitResponseTest, ADriftOfTheTargetIsNoPartOfItsSwing) {
+  std::vector<Eigen::Vector3d> target, hand;
+  const auto place = [](double t) {
+    return Eigen::Vector3d(0.01 * t, 0.02 * std::sin(2.0 * M_PI * 0.13 * t + 1.0), 0.005 * t);
+  };
+  for (int tick = 0; tick < 38'000; ++tick) {
+    target.push_back(place(tick / 1000.0));
+    hand.push_back(place(tick / 1000.0 - 0.2));
+  }
+  const PursuitResponse found = pursuit_response(target, hand, 1000.0, {0.13});
+  EXPECT_NEAR(std::abs(found.response[0]), 1.0, 1e-9);
+  EXPECT_NEAR(-std::arg(found.response[0]) / (2.0 * M_PI * 0.13), 0.2, 1e-9);
+  EXPECT_NEAR(found.followed, 1.0, 1e-9);
+}
+
+TEST(PursuitResponseTest, FrequenciesThatTheTargetLacksHaveNoGain) {
+  std::vector<Eigen::Vector3d> target, hand;
+  const auto place = [](double t) {
+    return Eigen::Vector3d(0.02 * std::sin(2.0 * M_PI * 0.1 * t) + 0.01 * std::cos(3.1 * t), 0.0,
+                           0.0);
+  };
+  for (int tick = 0; tick < 37'000; ++tick) {
+    target.push_back(place(tick / 1000.0));
+    hand.push_back(place(tick / 1000.0 - 0.2));
+  }
+  const double other = 3.1 / (2.0 * M_PI);  // [Hz]
+  const PursuitResponse whole = pursuit_response(target, hand, 1000.0, {0.1, other, 0.4});
+  EXPECT_NEAR(-std::arg(whole.response[0]) / (2.0 * M_PI * 0.1), 0.2, 1e-9);
+  EXPECT_NEAR(-std::arg(whole.response[1]) / 3.1, 0.2, 1e-9);
+  EXPECT_TRUE(std::isnan(whole.response[2].real()));
+  EXPECT_TRUE(std::isnan(whole.followed));
+  const PursuitResponse part = pursuit_response(target, hand, 1000.0, {0.1});
+  EXPECT_TRUE(std::isnan(part.response[0].real()));  // the other sine leaks into it
+}
+
 /// What the hand does across the target's line is no error of the pursuit.
 TEST(PursuitResponseTest, OnlyDirectionsCountInWhichTheTargetMoves) {
   std::vector<Eigen::Vector3d> target, hand;
