@@ -573,5 +573,21 @@ TEST(LanguagesTest, ALanguageIsRecorded) {
   EXPECT_THROW(load_experiment(file, "hi"), InputError);
 }
 
+TEST(SessionPagesTest, ReportsTellSessionsOfAParticipantApart) {
+  const test::TemporaryFolder folder;
+  std::string text = file_text(HAPTRIAL_SOURCE_DIR "/experiments/first_experiment.toml");
+  text.insert(text.find("[design]\n") + 9, "sessions = 2\n");
+  text += "[pages]\nafter = [\"load\"]\n[pages.load]\nkind = \"nasa_tlx\"\n";
+  std::ofstream(folder / "study.toml") << text;
+  const std::string out = (folder / "out").string();
+  const test::CommandResult result =
+      test::run_command("haptrial dry-run " + (folder / "study.toml").string() +
+                        " --subjects 2 --trials 2 --out " + out + " && haptrial analyze " + out);
+  ASSERT_EQ(result.status, 0) << result.errors;
+  const std::string report = file_text(fs::path(out) / "report.md");
+  EXPECT_THAT(report, HasSubstr("| load | session 1, after | raw | – | 2 |"));
+  EXPECT_THAT(report, HasSubstr("| load | session 2, after | raw | – | 2 |"));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

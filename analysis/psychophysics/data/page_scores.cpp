@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <cstdint>
+#include <map>
 #include <utility>
 
+#include "analysis/psychophysics/data/trials_data.h"
+#include "analysis/statistics/base/descriptive.h"
 #include "core/questions/scores.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/page_answer.h"
@@ -26,7 +29,7 @@ std::string time_word(const record::AnswerRow& row) {
   return "after";
 }
 
-/// The answers to one page on one occasion.
+/// The answers to one page at one time of a session.
 struct Filled {
   std::string page, when;
   std::vector<questions::GivenAnswer> answers;
@@ -59,6 +62,22 @@ bool same(const PageSummary& summary, const PageScore& score) {
          summary.group == score.group;
 }
 
+/// A participant's value: the mean, if the session has several files.
+std::vector<double> values_by_participant(const PageSummary& summary,
+                                          const std::vector<PageScore>& scores) {
+  std::map<std::string, std::vector<double>> own;
+  for (const PageScore& score : scores) {
+    if (same(summary, score)) {
+      own[score.participant].push_back(score.value);
+    }
+  }
+  std::vector<double> values;
+  for (const auto& [participant, each] : own) {
+    values.push_back(moments(each)->mean());
+  }
+  return values;
+}
+
 }  // namespace
 
 std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& files,
@@ -67,6 +86,7 @@ std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& fil
   if (plan.empty()) {
     return scores;
   }
+  std::vector<std::int64_t> sessions;  // (scores)
   for (const std::filesystem::path& file : files) {
     const record::SessionReader reader(file);
     const std::string& person = reader.info().subject;
@@ -81,8 +101,13 @@ std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& fil
       for (const questions::Score& score :
            questions::scores_of(plan.page(filled.page), filled.answers)) {
         scores.push_back({person, group, filled.page, filled.when, score.name, score.value});
+        sessions.push_back(reader.info().session);
       }
     }
+  }
+  const bool several = std::ranges::any_of(sessions, [](auto session) { return session > 1; });
+  for (std::size_t i = 0; several && i < scores.size(); ++i) {
+    scores[i].when = fmt::format("session {}, {}", sessions[i], scores[i].when);
   }
   return scores;
 }
@@ -97,25 +122,10 @@ std::vector<PageSummary> summaries_of(const std::vector<PageScore>& scores) {
     }
   }
   for (PageSummary& summary : all) {
-    std::vector<double> values;
-    for (const PageScore& score : scores) {
-      if (same(summary, score)) {
-        values.push_back(score.value);
-      }
-    }
-    const auto count = static_cast<double>(values.size());
-    double sum = 0.0;
-    for (const double value : values) {
-      sum += value / count;
-    }
-    double squares = 0.0;
-    for (const double value : values) {
-      squares += (value - sum) * (value - sum);
-    }
-    summary.count = values.size();
-    summary.mean = sum;
-    summary.deviation = values.size() > 1 ? std::sqrt(squares / (count - 1.0))
-                                          : std::numeric_limits<double>::quiet_NaN();
+    const auto over_people = moments(values_by_participant(summary, scores));
+    summary.count = over_people->count;
+    summary.mean = over_people->mean();
+    summary.deviation = summary.count > 1 ? std::sqrt(over_people->variance()) : kNotKnown;
   }
   return all;
 }

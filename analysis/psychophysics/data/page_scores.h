@@ -15,7 +15,7 @@ struct PageScore {
   std::string participant;
   std::string group;  // empty: the study has none
   std::string page;
-  std::string when;   // "before", "after", "after block 2"
+  std::string when;   // "before", "after block 2"; of several sessions "session 2, before"
   std::string score;  // "raw", "laterality quotient", or an item
   double value{0.0};
 };
@@ -29,13 +29,13 @@ struct PageSummary {
   double deviation{0.0};  // standard deviation; NaN of a single participant
 };
 
-/// The scores of every session with answers, in the order of files and pages. Of a participant with
-/// several sessions each counts.
+/// The scores of every session with answers, in the order of files and pages.
 /// @throws InputError naming a file that is damaged.
 std::vector<PageScore> page_scores(const std::vector<std::filesystem::path>& files,
                                    const questions::PagePlan& plan, const GroupOf& group_of);
 
-/// Mean and standard deviation for each group, in the order of first occurrence.
+/// Mean and standard deviation over participants for each time and group, in the order of first
+/// occurrence.
 std::vector<PageSummary> summaries_of(const std::vector<PageScore>& scores);
 
 }  // namespace haptrial::analysis::trials
