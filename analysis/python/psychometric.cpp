@@ -2,6 +2,7 @@
 #include <optional>
 #include <string>
 
+#include "analysis/psychometric/fit/bootstrap_fit.h"
 #include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/python/arrays.h"
 #include "core/base/error.h"
@@ -87,15 +88,19 @@ py::tuple interval(const analysis::StatedFit& fit, const analysis::ProfileInterv
 }
 
 /// A fit's numbers, and the function that it found; levels in the unit of the stimulus.
+/// @param how  draws that judge the scatter of answers to listed levels; a count of 0: nothing does
 py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOptions& options,
-             bool adaptive) {
+             bool adaptive, const analysis::FitBootstrap& how) {
   std::optional<PsychometricFunction> function;
   analysis::StatedFit found;
   analysis::PsychometricDeviance deviance;
+  double deviance_p = std::numeric_limits<double>::quiet_NaN();
   {
     const py::gil_scoped_release release;
-    found =
-        analysis::stated_fit(blocks, options, adaptive, std::numeric_limits<double>::quiet_NaN());
+    if (!adaptive && how.resampling.count > 0) {
+      deviance_p = analysis::bootstrap_fit(blocks, options, {}, how).deviance_p;
+    }
+    found = analysis::stated_fit(blocks, options, adaptive, deviance_p);
     function = analysis::fitted_function(options.function, found.estimate);
     deviance = analysis::deviance_of(
         analysis::fitted_function(options.function, found.likeliest.parameters), blocks);
@@ -116,6 +121,7 @@ py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOp
   result["guess"] = found.estimate.guess;
   result["log_likelihood"] = found.likeliest.log_likelihood;
   result["deviance"] = deviance.deviance;
+  result["deviance_p"] = deviance_p;
   result["undetermined"] = !found.told;
   result["no_interval"] = found.no_interval;
   return result;
@@ -170,7 +176,8 @@ void bind_psychometric(py::module_& module) {
       [](const Numbers& levels, const std::vector<int>& correct, const std::vector<int>& total,
          const std::string& function, std::optional<double> guess, std::pair<double, double> lapse,
          const std::string& scale, double origin, double share, double tail, bool adaptive,
-         const std::optional<std::pair<double, double>>& presentable) {
+         const std::optional<std::pair<double, double>>& presentable, std::size_t resamples,
+         const std::string& participant, const std::string& condition) {
         LikelihoodOptions options;
         options.function = function_shape(function, scale, origin, share, tail);
         options.function.guess = guess.value_or(0.0);
@@ -184,11 +191,14 @@ void bind_psychometric(py::module_& module) {
           const Axis& axis = options.function.axis;
           options.presentable = {axis.at(presentable->first), axis.at(presentable->second)};
         }
-        return fit(blocks_of(levels, correct, total), options, adaptive);
+        analysis::FitBootstrap how = analysis::bootstrap_of(participant, condition);
+        how.resampling.count = resamples;
+        return fit(blocks_of(levels, correct, total), options, adaptive, how);
       },
       py::arg("levels"), py::arg("correct"), py::arg("total"), py::arg("function"),
       py::arg("guess"), py::arg("lapse"), py::arg("scale"), py::arg("origin"), py::arg("share"),
-      py::arg("tail"), py::arg("adaptive"), py::arg("presentable"));
+      py::arg("tail"), py::arg("adaptive"), py::arg("presentable"), py::arg("resamples"),
+      py::arg("participant"), py::arg("condition"));
 }
 
 }  // namespace haptrial::python

@@ -125,6 +125,12 @@ double read_off(const PsychometricFunction& function, const BootstrapTarget& ask
          asked.standard;
 }
 
+FitBootstrap bootstrap_of(const std::string& participant, const std::string& condition) {
+  FitBootstrap how;
+  how.resampling.stream = "psychometric bootstrap " + participant + " " + condition;
+  return how;
+}
+
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
                               std::span<const BootstrapTarget> asked, const FitBootstrap& how) {
   check_asked(asked);

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "analysis/psychometric/fit/likelihood_fit.h"
@@ -51,6 +52,10 @@ struct BootstrappedFit {
   /// Resamples whose threshold or width is undetermined.
   std::size_t undetermined{0};
 };
+
+/// The bootstrap of a participant's function under a condition: its draws are those of every fit
+/// with these names, in a report or anywhere else. Empty names: there are none.
+FitBootstrap bootstrap_of(const std::string& participant, const std::string& condition);
 
 /// The fit with bootstrap intervals of anything that can be read off it. For threshold and width
 /// take profiled_fit(), whose intervals hold the truth more reliably. Each resample draws all

@@ -231,10 +231,8 @@ void fit_stated(FunctionFit& result, const LikelihoodOptions& options, const Tri
   for (const double share : kBandShares) {
     asked.push_back({Reading::kLevelOfShare, share});
   }
-  FitBootstrap how;
+  FitBootstrap how = bootstrap_of(result.participant, result.condition);
   how.resampling.seed = plan.seed;
-  how.resampling.stream =
-      fmt::format("psychometric bootstrap {} {}", result.participant, result.condition);
   how.resampling.count = plan.resamples;
   how.resampling.threads = threads;
   const bool bootstrapped = plan.resamples > 0;

@@ -27,6 +27,8 @@ class Fit:
     guess: float                                 #: lower asymptote [1]
     log_likelihood: float                        #: without binomial coefficients
     deviance: float                              #: 2 (log-likelihood of the shares - its own)
+    deviance_p: float                            #: share of simulated observers with this function
+                                                 #: whose deviance is as large; NaN: none was drawn
     undetermined: bool                           #: the answers do not tell threshold and width
     no_interval: str                             #: why there are no intervals; "": there are
 
@@ -51,8 +53,10 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
         function: str = "norm", guess: float | None = 0.5,
         lapse: tuple[float, float] = (0.0, 0.2), scale: str = "", origin: float = 0.0,
         share: float = 0.5, tail: float = 0.05, adaptive: bool = False,
-        presentable: tuple[float, float] | None = None) -> Fit:
+        presentable: tuple[float, float] | None = None, resamples: int = 1999,
+        participant: str = "", condition: str = "") -> Fit:
     """Fits a psychometric function as reports do: estimates and 95 % intervals of one method.
+    Intervals of listed levels are longer if answers scatter more than chance (deviance_p < 0.2).
 
     levels    (blocks) [unit of the level]
     correct   (blocks) answers 1 ("correct", "yes") at each level
@@ -65,9 +69,12 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
               posterior (docs/algorithms/procedure-coverage.md), else of the likelihood
     presentable   lowest and highest level that a trial could have had, if no trial had them
               [unit of the level]
+    resamples   simulated observers from whom deviance_p follows; 0: none, and intervals are those
+              of answers without scatter
+    participant, condition   of a report, "P01" and "soft, left": deviance_p is then drawn as there
     function, scale, origin, share, tail   as psychometric_function()"""
     right = np.asarray(correct, dtype=int)
     asked = np.ones_like(right) if total is None else np.asarray(total, dtype=int)
     return Fit(**_haptrial.fit(np.asarray(levels, dtype=float), right.tolist(), asked.tolist(),
                                function, guess, lapse, scale, origin, share, tail, adaptive,
-                               presentable))
+                               presentable, resamples, participant, condition))

@@ -35,6 +35,36 @@ class FitTest(unittest.TestCase):
             self.assertEqual(fit.lapse, written.loc[(participant, "lapse_rate"), "estimate"])
             self.assertEqual(fit.width_unit, "log10")
 
+    def test_is_the_reports_if_answers_scatter(self):
+        right = {("P01", "off"): [12, 13, 18, 23, 21, 25], ("P01", "on"): [12, 14, 17, 21, 24, 25],
+                 ("P02", "off"): [12, 14, 17, 21, 24, 25], ("P02", "on"): [13, 14, 19, 22, 23, 25]}
+        rows = [(*name, level, int(trial < count)) for name, counts in right.items()
+                for level, count in enumerate(counts, 1) for trial in range(25)]
+        table = support.FOLDER / "scattered.csv"
+        pd.DataFrame(rows, columns=["participant", "cond", "level", "correct"]).to_csv(
+            table, index=False)
+        folder = support.FOLDER / "scattered"
+        for arguments in (["import", table, "--out", folder, "--guess", "0.5", "--factor", "cond"],
+                          ["analyze", folder]):
+            status, _, error = support.command(*arguments)
+            self.assertEqual(status, 0, error)
+        written = pd.read_csv(folder / "estimates.csv", float_precision="round_trip")
+        written = written[written["source"] == "likelihood"]
+        for (participant, condition), counts in right.items():
+            given = dict(function="norm", guess=0.5)
+            fit = haptrial.fit(range(1, 7), counts, [25] * 6, **given, participant=participant,
+                               condition=condition)
+            own = written[(written["participant"] == participant) &
+                          (written["cond"] == condition)].set_index("name")
+            for name, value, interval in (("threshold", fit.threshold, fit.threshold_interval),
+                                          ("width", fit.width, fit.width_interval)):
+                self.assertEqual((value, *interval),
+                                 tuple(own.loc[name, ["estimate", "low", "high"]]))
+            plain = haptrial.fit(range(1, 7), counts, [25] * 6, **given, resamples=0)
+            shorter = plain.threshold_interval[1] < fit.threshold_interval[1]
+            self.assertEqual(shorter, fit.deviance_p < 0.2)
+            self.assertTrue(math.isnan(plain.deviance_p))
+
     def test_single_trials_and_their_sums_are_the_same(self):
         levels, right = [1.0, 2.0, 3.0, 4.0], [11, 13, 18, 20]
         pooled = haptrial.fit(levels, right, [20] * 4)
