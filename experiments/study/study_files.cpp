@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -21,6 +22,8 @@
 #include "experiments/runner/version.h"
 #include "experiments/study/study_definitions.h"
 #include "experiments/study/study_run.h"
+#include "protocols/definition/definition.h"
+#include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -404,19 +407,35 @@ StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& 
   return study;
 }
 
-std::vector<std::string> participants_in_order(const std::vector<fs::path>& files) {
-  std::map<std::string, std::pair<std::string, std::uint64_t>> begun;  // by participant
+std::vector<std::string> complete_participants(const std::vector<fs::path>& files,
+                                               const protocols::Definition& definition) {
+  using Start = std::pair<std::string, std::uint64_t>;  // time and number of the participant
+  std::map<std::string, std::map<int, Start>> begun;    // by participant and session
   for (const fs::path& file : files) {
     const record::SessionInfo info = record::SessionReader(file).info();
-    const std::pair here(info.start_utc, info.participant_number);
-    const auto [first, is_new] = begun.try_emplace(info.subject, here);
+    const Start here(info.start_utc, info.participant_number);
+    const auto [first, is_new] =
+        begun[info.subject].try_emplace(static_cast<int>(info.session), here);
     first->second = std::min(first->second, here);
   }
+  std::map<std::string, Start> last;  // start of the last session by participant
+  for (const auto& [participant, sessions] : begun) {
+    const std::string group = definition.groups.size() > 1
+                                  ? protocols::group_of(definition.groups, participant)
+                                  : std::string();
+    int had = 0;
+    for (const auto& [session, start] : sessions) {
+      had += definition.comes(session, group) ? 1 : 0;
+    }
+    if (had >= definition.sessions_of(group)) {
+      last[participant] = std::ranges::max(std::views::values(sessions));
+    }
+  }
   std::vector<std::string> order;
-  for (const auto& [participant, start] : begun) {
+  for (const auto& [participant, start] : last) {
     order.push_back(participant);
   }
-  std::ranges::stable_sort(order, {}, [&](const std::string& each) { return begun.at(each); });
+  std::ranges::stable_sort(order, {}, [&](const std::string& each) { return last.at(each); });
   return order;
 }
 

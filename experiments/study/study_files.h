@@ -12,8 +12,9 @@ class SessionReader;
 }
 
 namespace haptrial::protocols {
+struct Definition;
 class Protocol;
-}
+}  // namespace haptrial::protocols
 
 namespace haptrial::experiments {
 
@@ -72,8 +73,10 @@ using ProtocolOf = std::function<const protocols::Protocol&(const record::Sessio
 StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots,
                        const ProtocolOf& protocol_of);
 
-/// The participants of session files in the order in which they began their first sessions; those
-/// of an import, which begin together, by their numbers, which are places in the tables.
-std::vector<std::string> participants_in_order(const std::vector<std::filesystem::path>& files);
+/// The participants who have had every session of their group, in the order in which they began
+/// the last of them: those of whom a study that may end early has all data. Those of an import,
+/// which begin together, come by their numbers, which are places in the tables.
+std::vector<std::string> complete_participants(const std::vector<std::filesystem::path>& files,
+                                               const protocols::Definition& definition);
 
 }  // namespace haptrial::experiments

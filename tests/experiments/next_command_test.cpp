@@ -75,6 +75,28 @@ TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));
 }
 
+/// Five people come on two days; the fifth has had the first day alone.
+TEST_F(NextCommandTest, PeopleCountWithEverySessionAndKeepThoseThatTheyHaveLeft) {
+  set("sequential.rule", "'\"bayes factor\"'");
+  set("sequential.fewest", "2");
+  ASSERT_EQ(run("set crossmodal_congruency.toml design.sessions 2").status, 0);
+  rehearse(5);
+  fs::remove(folder_ / "out/S05-session-2.h5");
+  const std::string ended = "the study has ended: there is an effect";
+  EXPECT_THAT(next().output, testing::AllOf(HasSubstr(ended), HasSubstr("next: S05, session 2")));
+  EXPECT_THAT(
+      run("roster crossmodal_congruency.toml out").output,
+      testing::AllOf(HasSubstr(ended), HasSubstr("next: S05, session 2"), Not(HasSubstr("S06"))));
+  const std::string run_out = "run crossmodal_congruency.toml --trials 1 --out out --subject ";
+  EXPECT_THAT(run(run_out + "S06").output, HasSubstr(ended));
+  EXPECT_THAT(run(run_out + "S05 --session 2").output, Not(HasSubstr(ended)));
+  for (const char* file : {"S03-session-2.h5", "S04-session-2.h5", "S05-session-2.h5"}) {
+    fs::remove(folder_ / "out" / file);
+  }
+  EXPECT_THAT(next().output,
+              testing::AllOf(HasSubstr("after 2 of at most 12 participants"), HasSubstr("go on")));
+}
+
 TEST_F(NextCommandTest, BetweenLooksItGoesOn) {
   set("sequential.rule", "'\"group sequential\"'");
   set("sequential.looks", "'[4.0, 12.0]'");

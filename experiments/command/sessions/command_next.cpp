@@ -20,15 +20,6 @@ struct NextOptions {
   std::optional<int> jobs;
 };
 
-void print_who_is_next(const Roster& roster) {
-  if (roster.next.empty()) {
-    fmt::print("every planned participant has had every session\n");
-    return;
-  }
-  const RosterNext& next = roster.next.front();
-  fmt::print("next: {}\n      {}\n", words_of(next, roster.sessions), next.command);
-}
-
 int next(const NextOptions& options) {
   const Experiment experiment = load_experiment(options.definition);
   RosterRequest request;
@@ -42,8 +33,12 @@ int next(const NextOptions& options) {
   if (result) {
     fmt::print("{}\n", words_of(*result));
   }
-  if (!has_ended(result)) {
-    print_who_is_next(roster);
+  const std::vector<RosterNext> next = next_sessions(roster, result);
+  if (!next.empty()) {
+    fmt::print("next: {}\n      {}\n", words_of(next.front(), roster.sessions),
+               next.front().command);
+  } else if (!has_ended(result)) {
+    fmt::print("every planned participant has had every session\n");
   }
   return 0;
 }

@@ -111,16 +111,14 @@ void print_roster(const Roster& roster, const std::optional<analysis::Sequential
   if (standing) {
     fmt::print("{}\n", words_of(*standing));
   }
-  if (has_ended(standing)) {
-    fmt::print("nobody is next\n");
-    return;
-  }
-  for (const RosterNext& next : roster.next) {
-    fmt::print("{}: {}\n      {}\n", &next == roster.next.data() ? "next" : "or",
+  const std::vector<RosterNext> all = next_sessions(roster, standing);
+  for (const RosterNext& next : all) {
+    fmt::print("{}: {}\n      {}\n", &next == all.data() ? "next" : "or",
                words_of(next, roster.sessions), next.command);
   }
-  if (roster.next.empty()) {
-    fmt::print("every planned participant has had every session\n");
+  if (all.empty()) {
+    fmt::print("{}\n", has_ended(standing) ? "nobody is next"
+                                           : "every planned participant has had every session");
   }
 }
 
@@ -187,7 +185,7 @@ std::string json_of(const Roster& roster,
     json["participants"].push_back(std::move(own));
   }
   json["next"] = nlohmann::ordered_json::array();
-  for (const RosterNext& next : has_ended(standing) ? std::vector<RosterNext>{} : roster.next) {
+  for (const RosterNext& next : next_sessions(roster, standing)) {
     json["next"].push_back({{"subject", next.subject},
                             {"number", next.number},
                             {"group", next.group},

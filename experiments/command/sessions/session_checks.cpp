@@ -250,7 +250,8 @@ bool SessionChecks::ready() const {
 
 std::optional<MachineCheck> check_end_of_study(const RunOptions& options,
                                                const Experiment& experiment) {
-  if (options.pilot || options.resume) {
+  const bool has_begun = options.resume || options.session.value_or(1) > 1;
+  if (options.pilot || has_begun) {
     return std::nullopt;
   }
   try {

@@ -25,4 +25,13 @@ bool has_ended(const std::optional<analysis::SequentialResult>& standing) {
   return standing && standing->verdict != analysis::SequentialVerdict::kGoOn;
 }
 
+std::vector<RosterNext> next_sessions(const Roster& roster,
+                                      const std::optional<analysis::SequentialResult>& standing) {
+  std::vector<RosterNext> next = roster.next;
+  if (has_ended(standing)) {
+    std::erase_if(next, [](const RosterNext& each) { return each.fresh; });
+  }
+  return next;
+}
+
 }  // namespace haptrial::experiments

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "analysis/statistics/design/sequential_looks.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/roster.h"
 
 namespace haptrial::experiments {
 
@@ -16,5 +18,9 @@ std::optional<analysis::SequentialResult> study_standing(const Experiment& exper
                                                          int threads);
 
 bool has_ended(const std::optional<analysis::SequentialResult>& standing);
+
+/// The sessions to run next: of a study that has ended, those that participants have left.
+std::vector<RosterNext> next_sessions(const Roster& roster,
+                                      const std::optional<analysis::SequentialResult>& standing);
 
 }  // namespace haptrial::experiments

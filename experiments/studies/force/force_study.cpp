@@ -87,10 +87,10 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
   }
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
   if (plan.sequential) {
-    study.statistics.tests.sequential =
-        analysis::sequential_result(study.statistics.table, analysis::decisive_test(plan),
-                                    *plan.sequential, participants_in_order(found.files),
-                                    static_cast<std::size_t>(definition.design.participants));
+    study.statistics.tests.sequential = analysis::sequential_result(
+        study.statistics.table, analysis::decisive_test(plan), *plan.sequential,
+        complete_participants(found.files, definition),
+        static_cast<std::size_t>(definition.design.participants));
   }
   study.remarks = found.remarks;
   study.remarks.insert(study.remarks.end(), remarks.begin(), remarks.end());

@@ -103,7 +103,7 @@ void add_sequential(const AnalysisRequest& request, const TrialsDefinition& defi
                                                             "analysis.sequential.of")) {
     decides->tests.sequential =
         analysis::sequential_result(decides->table, analysis::decisive_test(plan), *plan.sequential,
-                                    participants_in_order(request.files.files),
+                                    complete_participants(request.files.files, definition),
                                     static_cast<std::size_t>(definition.design.participants));
   }
 }
