@@ -1,9 +1,12 @@
 #include "analysis/psychophysics/fit/reaching_study.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "analysis/psychophysics/fit/trials_plan.h"
 #include "analysis/statistics/base/p_adjust.h"
 #include "core/base/error.h"
 
@@ -18,8 +21,37 @@ struct ReachIndex {
   std::size_t participant{0}, block{0}, place{0};
 };
 
+using BlockKey = std::pair<int, std::string>;  // a session's number and a block's name in it
+
+BlockKey key_of(const TrialsData& data, const StudyReach& reach) {
+  return {data.session_of(data.trials[reach.trial]).session, reach.block};
+}
+
+/// Adds the blocks that somebody had, session after session. @returns their numbers
+std::map<BlockKey, std::size_t> add_blocks(const TrialsData& data, ReachingResult& result) {
+  std::map<BlockKey, std::size_t> numbers;
+  for (const StudyReach& reach : result.reaches) {
+    const BlockKey key = key_of(data, reach);
+    if (numbers.emplace(key, 0).second) {
+      const std::string session = factor_level(data, data.trials[reach.trial], kSession);
+      ReachBlock& block = result.blocks.emplace_back();
+      block.name = fmt::format("session {}, {}", session, reach.block);
+      block.session = key.first;
+      block.in_session = reach.block;
+    }
+  }
+  std::ranges::stable_sort(result.blocks, {}, &ReachBlock::session);
+  const bool several = result.blocks.front().session != result.blocks.back().session;
+  for (std::size_t b = 0; b < result.blocks.size(); ++b) {
+    ReachBlock& block = result.blocks[b];
+    numbers[{block.session, block.in_session}] = b;
+    block.name = several ? block.name : block.in_session;
+  }
+  return numbers;
+}
+
 std::vector<ReachIndex> standings(const TrialsData& data, ReachingResult& result) {
-  std::map<std::string, std::size_t> blocks;
+  const std::map<BlockKey, std::size_t> blocks = add_blocks(data, result);
   std::map<std::pair<std::size_t, std::size_t>, std::size_t> places;
   for (const StudySession& session : data.sessions) {
     result.participants.push_back(session.participant);
@@ -30,20 +62,17 @@ std::vector<ReachIndex> standings(const TrialsData& data, ReachingResult& result
   std::vector<ReachIndex> all;
   for (const StudyReach& reach : result.reaches) {
     const std::string& name = data.session_of(data.trials[reach.trial]).participant;
-    const auto [block, fresh] = blocks.emplace(reach.block, result.blocks.size());
-    if (fresh) {
-      result.blocks.emplace_back().name = reach.block;
-    }
     ReachIndex own;
     own.participant = static_cast<std::size_t>(
         std::lower_bound(result.participants.begin(), result.participants.end(), name) -
         result.participants.begin());
-    own.block = block->second;
+    own.block = blocks.at(key_of(data, reach));
     own.place = places[{own.participant, own.block}]++;
     ReachBlock& of = result.blocks[own.block];
     of.trials = std::max(of.trials, own.place + 1);
     all.push_back(own);
     result.persons.push_back(own.participant);
+    result.block_of.push_back(own.block);
   }
   return all;
 }
@@ -63,7 +92,9 @@ void lay_out(const std::vector<ReachIndex>& standings, ReachingResult& result) {
     block.first_cycle = next;
     block.cycles = (block.trials + result.plan.cycle - 1) / result.plan.cycle;
     block.perturbation = counts[b] > 0.0 ? sums[b] / counts[b] : 0.0;
-    block.learns = std::abs(block.perturbation - before) > kSamePerturbation;
+    const bool begins = b == 0 || result.blocks[b - 1].session != block.session;
+    block.learns = std::abs(block.perturbation - before) > kSamePerturbation ||
+                   (begins && std::abs(block.perturbation) > kSamePerturbation);
     before = block.perturbation;
     next += block.cycles;
   }
@@ -121,25 +152,44 @@ void add(ReachingResult& result, std::string name, const char* unit, const Cycle
   result.contrasts.push_back(std::move(made));
 }
 
+/// The block of the same name in the nearest session before; null: there is none.
+const ReachBlock* earlier(const ReachingResult& result, const ReachBlock& block) {
+  const ReachBlock* found = nullptr;
+  for (const ReachBlock& other : result.blocks) {
+    if (other.session < block.session && other.in_session == block.in_session) {
+      found = &other;
+    }
+  }
+  return found;
+}
+
 void add_plain_contrasts(ReachingResult& result) {
   const CycleTable& table = result.plain.table;
-  const ReachBlock& base = result.blocks.front();
   const auto add_change = [&](const ReachBlock& block) {
     if (block.cycles > 1) {
       add(result, block.name + ": first cycle against its last", "m", table, first_of(block),
           last_of(block));
     }
   };
+  std::vector<const ReachBlock*> bases;  // the first of each session
   for (const ReachBlock& block : result.blocks) {
-    if (&block != &base) {
+    if (bases.empty() || bases.back()->session != block.session) {
+      bases.push_back(&block);
+    } else {
       add_change(block);
-      add(result, block.name + ": first cycle against the last of " + base.name, "m", table,
-          first_of(block), last_of(base));
+      add(result, block.name + ": first cycle against the last of " + bases.back()->name, "m",
+          table, first_of(block), last_of(*bases.back()));
       add(result, block.name + ": first cycle against 0", "m", table, first_of(block),
           std::nullopt);
     }
+    if (const ReachBlock* before = earlier(result, block)) {
+      add(result, block.name + ": first cycle against that of " + before->name, "m", table,
+          first_of(block), first_of(*before));
+    }
   }
-  add_change(base);  // without a field before it, a check that nothing changes by itself
+  for (const ReachBlock* base : bases) {
+    add_change(*base);  // without a field before it, a check that nothing changes by itself
+  }
 }
 
 void add_probe_contrasts(ReachingResult& result) {
@@ -187,25 +237,35 @@ std::optional<double> early_error(const StudyReach& reach) {
   return reach.kind == ReachKind::kPlain ? reach.turned(reach.error_at_150_ms) : std::nullopt;
 }
 
+/// The first block in a field; null: there is none.
+const ReachBlock* first_in_field(const ReachingResult& result) {
+  const auto found = std::ranges::find_if(result.blocks, [](const ReachBlock& block) {
+    return std::abs(block.perturbation) > kSamePerturbation;
+  });
+  return found != result.blocks.end() ? &*found : nullptr;
+}
+
 /// Effect of the field before anything is learnt: mean early error of the first cycle in it [m].
 double disturbance(const ReachingResult& result, const ReachCurve& early) {
-  for (const ReachBlock& block : result.blocks) {
-    if (std::abs(block.perturbation) > kSamePerturbation &&
-        block.first_cycle < early.points.size()) {
-      return early.points[block.first_cycle].mean / block.perturbation;
-    }
-  }
-  return 0.0;
+  const ReachBlock* block = first_in_field(result);
+  return block != nullptr && block->first_cycle < early.points.size()
+             ? early.points[block->first_cycle].mean / block->perturbation
+             : 0.0;
 }
 
 /// Errors in units of the disturbance, so that they weigh like the force compensation of clamps.
+/// The model knows no nights, so that the first session in a field is fitted alone.
 Defined<TwoRateLearning> two_rate_of(const std::vector<ReachIndex>& standings,
                                      const ReachingResult& result, int threads) {
   if (std::abs(result.two_rate_unit) < kLeastUnit) {
     return Undefined{"no block has a field that disturbs the reaches"};
   }
+  const int session = first_in_field(result)->session;
   std::map<std::size_t, AdaptationSequence> sequences;
   for (std::size_t i = 0; i < standings.size(); ++i) {
+    if (result.blocks[standings[i].block].session != session) {
+      continue;
+    }
     const StudyReach& reach = result.reaches[i];
     AdaptationTrial trial;
     trial.perturbation = reach.perturbation;

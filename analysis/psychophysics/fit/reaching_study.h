@@ -12,15 +12,19 @@
 
 namespace haptrial::analysis::trials {
 
-/// A block of all participants. The blocks follow each other in the order of the first participant,
-/// each from a cycle of its own, so that cycles of participants with another order still agree.
+/// A block of all participants in one of their sessions. The blocks of a session follow each other
+/// in the order of the first participant, each from a cycle of its own, so that cycles of
+/// participants with another order still agree.
 struct ReachBlock {
-  std::string name;
+  std::string name;            // of several sessions "session 2, adaptation"
+  int session{1};              // of a participant
+  std::string in_session;      // its name there: "adaptation"
   std::size_t trials{0};       // of a participant, at most
   std::size_t first_cycle{0};  // of the axis of all blocks
   std::size_t cycles{0};
   double perturbation{0.0};  // mean of its plain reaches: 1 in the field
-  bool learns{false};        // the perturbation is not that of the block before
+  bool learns{false};        // the perturbation is not that of the block before, or a session
+                             // begins in a field
   Defined<LearningFit> fit{Undefined{"the field is that of the block before"}};
 };
 
@@ -68,6 +72,7 @@ struct ReachingResult {
   std::vector<StudyReach> reaches;
   std::vector<std::string> participants;  // by the numbers in tables
   std::vector<std::size_t> persons;       // (reaches) such a number
+  std::vector<std::size_t> block_of;      // (reaches) in `blocks`
   std::vector<ReachBlock> blocks;
   std::vector<BlockMeans> means;  // (blocks)
   ReachCurve plain, catches;      // error, turned [m]

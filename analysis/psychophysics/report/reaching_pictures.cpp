@@ -81,10 +81,10 @@ struct DrawnReaches {
 /// First and last cycle of every block, and its catch trials, as far as there are any.
 std::vector<DrawnReaches> drawn_reaches(const ReachingResult& reaching) {
   std::map<const StudyReach*, std::size_t> cycle;
-  std::map<std::pair<std::size_t, std::string>, std::size_t> places;
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> places;
   for (std::size_t i = 0; i < reaching.reaches.size(); ++i) {
-    const StudyReach& reach = reaching.reaches[i];
-    cycle[&reach] = places[{reaching.persons[i], reach.block}]++ / reaching.plan.cycle;
+    cycle[&reaching.reaches[i]] =
+        places[{reaching.persons[i], reaching.block_of[i]}]++ / reaching.plan.cycle;
   }
   std::vector<DrawnReaches> all;
   for (std::size_t b = 0; b < reaching.blocks.size(); ++b) {
@@ -92,8 +92,9 @@ std::vector<DrawnReaches> drawn_reaches(const ReachingResult& reaching) {
     DrawnReaches first{block.name + " (first cycle)", b, palette::kLong};
     DrawnReaches last{block.name + " (last cycle)", b, palette::kSolid};
     DrawnReaches catches{block.name + " (catch trials)", b, palette::kShort};
-    for (const StudyReach& reach : reaching.reaches) {
-      if (reach.block != block.name || reach.path.empty()) {
+    for (std::size_t i = 0; i < reaching.reaches.size(); ++i) {
+      const StudyReach& reach = reaching.reaches[i];
+      if (reaching.block_of[i] != b || reach.path.empty()) {
         continue;
       }
       if (reach.kind == ReachKind::kCatch) {

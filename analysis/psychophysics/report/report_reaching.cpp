@@ -126,9 +126,12 @@ void add_two_rate(Document& document, const ReachingResult& reaching) {
         resampled.word("slow learning", m.slow.learning, t.slow_learning, 1.0)}});
   resampled.add_notes(document);
   document.paragraph(fmt::format(
-      "One model for all trials of all participants, {} measured values. Without adaptation the "
+      "One model for all trials of all participants{}, {} measured values. Without adaptation the "
       "field makes an error of {} mm at 150 ms. Errors at 150 ms, before feedback has acted much, "
       "are taken as proportional to what is not compensated; breaks are not modelled.",
+      reaching.blocks.front().session != reaching.blocks.back().session
+          ? " in the first session in a field"
+          : "",
       t.fit.count, number(kMillimetres * m.error_scale * reaching.two_rate_unit)));
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "analysis/psychophysics/fit/series.h"
@@ -62,15 +63,20 @@ Measure measure_of(ReachQuantity quantity) {
 }
 
 /// Whether each reach belongs to the plan's cycles of its block.
-std::vector<bool> taken(const ReachingResult& result) {
-  using Place = std::pair<std::size_t, std::string>;  // a participant's block
+std::vector<bool> taken(const TrialsData& data, const ReachingResult& result) {
+  using Place = std::tuple<std::size_t, int, std::string>;  // a participant's block in a session
+  const auto place_of = [&](std::size_t i) {
+    const StudyReach& reach = result.reaches[i];
+    const int session = data.session_of(data.trials[reach.trial]).session;
+    return Place{result.persons[i], session, reach.block};
+  };
   std::map<Place, std::size_t> trials, seen;
   for (std::size_t i = 0; i < result.reaches.size(); ++i) {
-    ++trials[{result.persons[i], result.reaches[i].block}];
+    ++trials[place_of(i)];
   }
   std::vector<bool> all;
   for (std::size_t i = 0; i < result.reaches.size(); ++i) {
-    const Place of{result.persons[i], result.reaches[i].block};
+    const Place of = place_of(i);
     const std::size_t cycle = seen[of]++ / result.plan.cycle;
     const std::size_t last = (trials[of] - 1) / result.plan.cycle;
     all.push_back(result.plan.cycles == ReachCycles::kAll ||
@@ -156,7 +162,7 @@ std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingRes
   if (plan.by.empty()) {
     return all;
   }
-  const std::vector<bool> counts = taken(reaching);
+  const std::vector<bool> counts = taken(data, reaching);
   for (const ReachQuantity each : reaching.plan.quantities) {
     const Measure measure = measure_of(each);
     std::vector<QuantityValue> values;

@@ -115,6 +115,75 @@ TEST(ReachQuantitiesTest, ThroughputIsBitsOfTheWidthThatWasUsedOverTime) {
   EXPECT_NEAR(*means[1][1] / (bits / 2.0), 1.0, 0.03);
 }
 
+/// Everybody comes on a second day and reaches as on the first, but 10 mm farther off the way, and
+/// each person 1 mm farther than the one before.
+test::ReachesOfStudy two_days(const ReachingPlan& plan) {
+  SimulatedReaches study;
+  study.participants = 4;
+  test::ReachesOfStudy made = simulated_reaches(study, plan);
+  const test::ReachesOfStudy day = made;
+  for (StudySession session : day.data.sessions) {
+    session.session = 2;
+    made.data.sessions.push_back(session);
+  }
+  for (std::size_t i = 0; i < day.reaching.reaches.size(); ++i) {
+    StudyTrial trial = day.data.trials[i];
+    StudyReach reach = day.reaching.reaches[i];
+    const auto person = static_cast<double>(day.reaching.persons[i]);
+    reach.trial = made.data.trials.size();
+    *reach.metrics.maximum_perpendicular_error += 0.01 + 0.001 * person;
+    trial.session += day.data.sessions.size();
+    made.data.trials.push_back(trial);
+    made.reaching.reaches.push_back(reach);
+    made.reaching.persons.push_back(day.reaching.persons[i]);
+  }
+  return made;
+}
+
+TEST(ReachQuantitiesTest, SessionsHaveCyclesOfTheirOwn) {
+  TrialsPlan plan = reach_plan({"session"});
+  plan.plan.tests.clear();
+  plan.reaching.cycle = 8;
+  plan.reaching.quantities = {ReachQuantity::kError};
+  for (const ReachCycles cycles : {ReachCycles::kAll, ReachCycles::kFirst, ReachCycles::kLast}) {
+    plan.reaching.cycles = cycles;
+    const auto made = two_days(plan.reaching);
+    const auto quantities = reach_quantities(made.data, made.reaching, plan);
+    const auto& means = quantities.at(0).table.means;
+    ASSERT_EQ(means.size(), 4u);
+    for (std::size_t person = 0; person < 4; ++person) {
+      ASSERT_TRUE(means[person].at(0) && means[person].at(1));
+      EXPECT_NEAR(*means[person][1] - *means[person][0], 0.01 + 0.001 * static_cast<double>(person),
+                  1e-12);
+    }
+  }
+}
+
+TEST(ReachQuantitiesTest, BlocksOfTheSameNameStayApartOverSessions) {
+  ReachingPlan plan = reach_plan({"session"}).reaching;
+  plan.cycle = 8;
+  const auto made = two_days(plan);
+  const ReachingResult result = reaching_study(made.data, made.reaching.reaches, plan, 1);
+  std::vector<std::string> names;
+  for (std::size_t b = 0; b < result.blocks.size(); ++b) {
+    names.push_back(result.blocks[b].name);
+    EXPECT_EQ(result.blocks[b].trials, 32u);
+    EXPECT_EQ(result.blocks[b].first_cycle, 4 * b);
+  }
+  EXPECT_THAT(names,
+              testing::ElementsAre("session 1, before", "session 1, during", "session 1, after",
+                                   "session 2, before", "session 2, during", "session 2, after"));
+  std::size_t compared = 0;
+  for (const ReachContrast& each : result.contrasts) {
+    if (each.name == "session 2, during: first cycle against that of session 1, during") {
+      ASSERT_TRUE(each.contrast);
+      EXPECT_NEAR(each.contrast->test.difference, 0.0115, 1e-12);
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 1u);
+}
+
 TEST(ReachQuantitiesTest, WithoutConditionsThereAreNone) {
   TrialsPlan plan = reach_plan({"group"});
   plan.by.clear();
