@@ -4,6 +4,7 @@
 
 #include "tests/experiments/everyday.h"
 
+#include <Eigen/Dense>
 #include <array>
 #include <numbers>
 
@@ -318,33 +319,39 @@ TEST_F(EverydayTest, ForceMatching) {
   EXPECT_EQ(results_.at("quantities").size(), 4u);
 }
 
-/// Worth of an item in the choices of a participant, climbed along the gradient.
+/// Worth of an item in the choices of a participant, climbed along the likelihood's score and the
+/// correction of its bias (Kosmidis and Firth 2009).
 double worth_of(const std::vector<Row>& rows, char item) {
-  std::map<std::pair<char, char>, double> wins;
-  for (const char a : {'A', 'B', 'C', 'D'}) {
-    for (const char b : {'A', 'B', 'C', 'D'}) {
-      wins[{a, b}] = a == b ? 0.0 : 0.5;
-    }
-  }
+  Eigen::Matrix4d wins = Eigen::Matrix4d::Zero();
   for (const Row& row : rows) {
-    const char one = row.at("first")[0], other = row.at("second")[0];
-    ++(row.at("stiffer.correct") == "1" ? wins[{one, other}] : wins[{other, one}]);
+    const int one = row.at("first")[0] - 'A', other = row.at("second")[0] - 'A';
+    wins(one, other) += row.at("stiffer.correct") == "1" ? 1.0 : 0.0;
+    wins(other, one) += row.at("stiffer.correct") == "1" ? 0.0 : 1.0;
   }
-  std::map<char, double> worth{{'A', 0.0}, {'B', 0.0}, {'C', 0.0}, {'D', 0.0}};
+  Eigen::Vector4d worth = Eigen::Vector4d::Zero();
   for (int step = 0; step < 4000; ++step) {
-    std::map<char, double> slope;
-    for (const auto& [pair, count] : wins) {
-      const double d = worth[pair.first] - worth[pair.second];
-      const double rise = count * std::exp(-0.5 * d * d) / std::sqrt(2.0 * M_PI) /
-                          (0.5 * std::erfc(-d / std::sqrt(2.0)));
-      slope[pair.first] += rise;
-      slope[pair.second] -= rise;
+    Eigen::Matrix4d information = Eigen::Matrix4d::Ones();
+    std::vector<std::pair<Eigen::Vector4d, double>> pairs;  // with their weights
+    Eigen::Vector4d slope = Eigen::Vector4d::Zero();
+    for (int i = 0; i < 4; ++i) {
+      for (int k = 0; k < i; ++k) {
+        const Eigen::Vector4d x = Eigen::Vector4d::Unit(i) - Eigen::Vector4d::Unit(k);
+        const double d = x.dot(worth);
+        const double density = std::exp(-0.5 * d * d) / std::sqrt(2.0 * M_PI);
+        const double p = 0.5 * std::erfc(-d / std::sqrt(2.0)), q = 1.0 - p;
+        const double weight = (wins(i, k) + wins(k, i)) * density * density / (p * q);
+        information += weight * x * x.transpose();
+        slope += (wins(i, k) / p - wins(k, i) / q) * density * x;
+        pairs.emplace_back(x, weight);
+      }
     }
-    for (auto& [name, value] : worth) {
-      value += 0.01 * slope[name];
+    const Eigen::Matrix4d inverse = information.inverse();
+    for (const auto& [x, weight] : pairs) {
+      slope -= 0.5 * weight * x.dot(inverse * x) * x.dot(worth) * x;
     }
+    worth += 0.01 * slope;
   }
-  return worth[item];
+  return worth[item - 'A'];
 }
 
 TEST_F(EverydayTest, StiffnessPairs) {

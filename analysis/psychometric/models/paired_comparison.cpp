@@ -1,6 +1,7 @@
 #include "analysis/psychometric/models/paired_comparison.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 #include "analysis/statistics/base/distributions.h"
@@ -12,56 +13,63 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 struct Chance {
-  double p{0.5};        // F
-  double density{0.0};  // its derivative
+  double p{0.5}, other{0.5};  // F, and 1 - F
+  double density{0.0};        // F'
+  double scale{1.0};          // F' / (F (1 - F))
+  double bend{0.0};           // F'' / F'
 };
 
 Chance chance(double difference, PairedModel model) {
   if (model == PairedModel::kBradleyTerry) {
     const double p = 1.0 / (1.0 + std::exp(-difference));
-    return {p, p * (1.0 - p)};
+    const double other = 1.0 / (1.0 + std::exp(difference));
+    return {p, other, p * other, 1.0, other - p};
   }
+  const double p = normal_upper_tail(-difference), other = normal_upper_tail(difference);
   const double density = std::exp(-0.5 * difference * difference) / std::sqrt(2.0 * M_PI);
-  return {normal_upper_tail(-difference), density};
+  return {p, other, density, density / std::max(p * other, 1e-300), -difference};
 }
 
-double log_likelihood(const MatrixXd& wins, const VectorXd& worth, PairedModel model) {
-  double sum = 0.0;
-  for (Eigen::Index i = 0; i < worth.size(); ++i) {
-    for (Eigen::Index k = 0; k < worth.size(); ++k) {
-      if (wins(i, k) > 0.0) {
-        sum += wins(i, k) * std::log(chance(worth[i] - worth[k], model).p);
-      }
-    }
-  }
-  return sum;
+/// Adds what is known of the difference between two worths to Fisher's information of all.
+void add_known(MatrixXd& information, Eigen::Index i, Eigen::Index k, double known) {
+  information(i, i) += known;
+  information(k, k) += known;
+  information(i, k) -= known;
+  information(k, i) -= known;
 }
 
-/// A step of Fisher's scoring; the mean of the worths stays.
+/// A step of Fisher's scoring on the score that takes the bias of first order away; the mean of the
+/// worths stays. A pair counts in the step with its leverage besides, as if so many answers more
+/// had been given, without which steps at few answers swing.
 VectorXd step_from(const MatrixXd& wins, const VectorXd& worth, PairedModel model) {
   const Eigen::Index n = worth.size();
-  VectorXd score = VectorXd::Zero(n);
-  MatrixXd information = MatrixXd::Constant(n, n, 1.0);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index k = 0; k < i; ++k) {
-      const Chance c = chance(worth[i] - worth[k], model);
-      const double scale = c.density / std::max(c.p * (1.0 - c.p), 1e-300);
-      const double both = wins(i, k) + wins(k, i);
-      const double gain = scale * (wins(i, k) - both * c.p);
-      const double known = both * scale * c.density;
-      score[i] += gain;
-      score[k] -= gain;
-      information(i, i) += known;
-      information(k, k) += known;
-      information(i, k) -= known;
-      information(k, i) -= known;
+  const auto for_each_pair = [&](auto&& visit) {
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index k = 0; k < i; ++k) {
+        const Chance c = chance(worth[i] - worth[k], model);
+        visit(i, k, c, c.density * c.scale);
+      }
     }
-  }
+  };
+  MatrixXd information = MatrixXd::Constant(n, n, 1.0);
+  for_each_pair([&](Eigen::Index i, Eigen::Index k, const Chance&, double of_one) {
+    add_known(information, i, k, (wins(i, k) + wins(k, i)) * of_one);
+  });
+  const MatrixXd spread = information.ldlt().solve(MatrixXd::Identity(n, n));
+  VectorXd score = VectorXd::Zero(n);
+  for_each_pair([&](Eigen::Index i, Eigen::Index k, const Chance& c, double of_one) {
+    const double leverage =
+        (wins(i, k) + wins(k, i)) * of_one * (spread(i, i) + spread(k, k) - 2.0 * spread(i, k));
+    const double gain =
+        c.scale * (wins(i, k) * c.other - wins(k, i) * c.p) + 0.5 * leverage * c.bend;
+    score[i] += gain;
+    score[k] -= gain;
+    add_known(information, i, k, leverage * of_one);
+  });
   return information.ldlt().solve(score);
 }
 
-/// Whether a chain of counts above 0 leads from every item to every other. Worths have an end
-/// exactly if one of choices does (Ford 1957, American Mathematical Monthly 64).
+/// Whether a chain of pairs with answers leads from every item to every other.
 bool are_connected(const MatrixXd& counts) {
   Eigen::ArrayXX<bool> over = counts.array() > 0.0;
   const Eigen::Index n = counts.rows();
@@ -77,34 +85,23 @@ bool are_connected(const MatrixXd& counts) {
 
 }  // namespace
 
-Defined<VectorXd> worths(const MatrixXd& given, PairedModel model, double added) {
-  constexpr int kMostSteps = 200;
+Defined<VectorXd> worths(const MatrixXd& wins, PairedModel model) {
+  constexpr int kMostSteps = 400;
   constexpr double kSettled = 1e-12;
-  const Eigen::Index n = given.rows();
+  constexpr double kLongestStep = 1.0;
+  const Eigen::Index n = wins.rows();
   if (n < 2) {
     return Undefined{"there are fewer than two items"};
   }
-  const MatrixXd presented = given + given.transpose();
-  if (!are_connected(presented)) {
+  if (!are_connected(wins + wins.transpose())) {
     return Undefined{"no chain of presented pairs links all items"};
   }
-  // Choices that were added to other pairs would compare items that nobody compared.
-  const MatrixXd wins = (presented.array() > 0.0).select(given.array() + added, 0.0);
-  if (!are_connected(wins)) {
-    return Undefined{"the answers leave the worth of an item without an end"};
-  }
   VectorXd worth = VectorXd::Zero(n);
-  double likelihood = log_likelihood(wins, worth, model);
   for (int i = 0; i < kMostSteps; ++i) {
-    VectorXd step = step_from(wins, worth, model);
-    double next = log_likelihood(wins, worth + step, model);
-    for (int halvings = 0; !(next >= likelihood) && halvings < 40; ++halvings) {
-      step /= 2.0;
-      next = log_likelihood(wins, worth + step, model);
-    }
-    worth += step;
-    likelihood = next;
-    if (step.cwiseAbs().maxCoeff() < kSettled) {
+    const VectorXd step = step_from(wins, worth, model);
+    const double longest = step.cwiseAbs().maxCoeff();
+    worth += step / std::max(1.0, longest / kLongestStep);
+    if (longest < kSettled) {
       return worth;
     }
   }

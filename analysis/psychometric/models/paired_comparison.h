@@ -14,15 +14,15 @@ enum class PairedModel : std::uint8_t {
                   // Psychological Review 34, case V)
 };
 
-/// Worths of items from how often each was chosen over each, by maximum likelihood; their mean is
-/// 0.
-/// @param wins   (items x items) how often the row's item was chosen over the column's, >= 0; 0 on
+/// Worths of items from how often each was chosen over each; their mean is 0. The likelihood's bias
+/// of first order is taken away, which few answers would make large: with it, means over
+/// participants would lie too far out, and worths of items that were always or never chosen would
+/// be infinite.
+/// @param wins  (items x items) how often the row's item was chosen over the column's, >= 0; 0 on
 ///   the diagonal
-/// @param added  choices of either item that each presented pair is given besides, >= 0: with 1/2,
-///   as in log odds of counts, nobody's worths are infinite, and few answers make them small
-/// @returns (items); undefined for fewer than two items, if no chain of presented pairs links them,
-/// and if the answers leave worths without an end: an item, or several, that were always or never
-/// chosen over all others
-Defined<Eigen::VectorXd> worths(const Eigen::MatrixXd& wins, PairedModel model, double added);
+/// @returns (items); undefined for fewer than two items, and if no chain of presented pairs links
+/// them
+/// Source: Firth 1993, Biometrika 80; Kosmidis and Firth 2009, Biometrika 96.
+Defined<Eigen::VectorXd> worths(const Eigen::MatrixXd& wins, PairedModel model);
 
 }  // namespace haptrial::analysis

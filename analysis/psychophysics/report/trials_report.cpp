@@ -12,7 +12,6 @@
 #include "analysis/psychophysics/report/trials_figures.h"
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_words.h"
-#include "analysis/psychophysics/study/paired_quantities.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::trials {
@@ -22,12 +21,12 @@ void add_paired_methods(Document& document, const PairedPlan& plan) {
   const bool odds = plan.model == PairedModel::kBradleyTerry;
   document.paragraph(fmt::format(
       "Worths are those of {}, fitted to the choices of each participant under a condition by "
-      "maximum likelihood; {} choice of either item was added to each presented pair, so that "
-      "items that were always or never chosen have one. Their mean over the items is 0. Shares "
-      "chosen are those of participants to whom every pair was presented.",
+      "maximum likelihood without its bias of first order (Firth 1993; Kosmidis and Firth 2009), "
+      "so that items that were always or never chosen have one, too; of worths that few trials "
+      "tell, such as these, the size is uncertain. Their mean over the items is 0. Shares chosen "
+      "are those of participants to whom every pair was presented.",
       odds ? "the model of Bradley and Terry (1952), in log odds"
-           : "Thurstone's case V (1927), in standard deviations of a difference",
-      number(kAddedChoices)));
+           : "Thurstone's case V (1927), in standard deviations of a difference"));
 }
 
 void add_produced_methods(Document& document, const ProducedPlan& plan) {

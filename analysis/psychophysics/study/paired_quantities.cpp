@@ -102,6 +102,22 @@ Defined<Eigen::VectorXd> shares_chosen(const Eigen::MatrixXd& counts) {
   return Eigen::VectorXd(chosen.array() / (chosen + other).array());
 }
 
+/// Takes the intervals of worths that trials without exception leave open on one side: those of
+/// items that more than half of the participants chose always or never.
+void remove_open_intervals(const std::vector<QuantityValue>& shares, Quantity& worth) {
+  std::map<std::string, int> exceptions;  // less participants without one, by condition
+  for (const QuantityValue& share : shares) {
+    const bool open = share.value == 0.0 || share.value == 1.0;
+    exceptions[fmt::format("{}", fmt::join(share.levels, ", "))] += open ? -1 : 1;
+  }
+  for (std::size_t cell = 0; cell < worth.means.size(); ++cell) {
+    const auto found = exceptions.find(worth.table.names[cell]);
+    if (found != exceptions.end() && found->second < 0) {
+      worth.means[cell] = Undefined{"most participants chose it always or never"};
+    }
+  }
+}
+
 Quantity with_reasons(Quantity result, const Collected& from) {
   for (const auto& [because, names] : from.missing) {
     result.missing.push_back(fmt::format("{}: no values of {}, because {}",
@@ -121,7 +137,7 @@ std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan
     const std::set<std::string>& met = items_under.at(condition.second);
     const std::vector<std::string> items(met.begin(), met.end());
     const Eigen::MatrixXd counts = counts_of(wins, items);
-    add_values(condition, items, worths(counts, plan.paired.model, kAddedChoices), worth);
+    add_values(condition, items, worths(counts, plan.paired.model), worth);
     add_values(condition, items, shares_chosen(counts), share);
   }
   const bool odds = plan.paired.model == PairedModel::kBradleyTerry;

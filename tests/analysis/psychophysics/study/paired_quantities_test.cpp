@@ -92,6 +92,20 @@ TEST(PairedQuantitiesTest, ParticipantsWithoutAllItemsHaveNoValues) {
   }
 }
 
+TEST(PairedQuantitiesTest, AWorthThatMostTrialsLeaveOpenHasNoInterval) {
+  TrialsData data = indifferent(1);
+  for (StudyTrial& trial : data.trials) {  // six people always choose a
+    if (trial.session < 6 && trial.variables[0].word == "a") {
+      trial.answers[0].correct = 1;
+    }
+  }
+  const auto found = paired_quantities(data, paired_plan());
+  ASSERT_EQ(found[0].means.size(), 3u);
+  ASSERT_FALSE(found[0].means[0]);
+  EXPECT_EQ(found[0].means[0].because(), "most participants chose it always or never");
+  EXPECT_TRUE(found[0].means[1]);
+}
+
 TEST(PairedQuantitiesTest, SharesNeedTheSameOpponentsAndWorthsOnlyAChain) {
   TrialsData data = indifferent(1);
   std::erase_if(data.trials, [](const StudyTrial& trial) {
