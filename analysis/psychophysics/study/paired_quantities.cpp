@@ -141,13 +141,12 @@ std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan
     add_values(condition, items, shares_chosen(counts), share);
   }
   const bool odds = plan.paired.model == PairedModel::kBradleyTerry;
-  return {
-      with_reasons(quantity("worth", odds ? "worth in log odds" : "worth in standard deviations",
-                            "", worth.values, plan),
-                   worth),
-      with_reasons(quantity("share_chosen", "share of trials in which it was chosen", "",
-                            share.values, plan, ValueRange::kShare),
-                   share)};
+  Quantity of_items = quantity("worth", odds ? "worth in log odds" : "worth in standard deviations",
+                               "", worth.values, plan);
+  remove_open_intervals(share.values, of_items);
+  Quantity shares = quantity("share_chosen", "share of trials in which it was chosen", "",
+                             share.values, plan, ValueRange::kShare);
+  return {with_reasons(std::move(of_items), worth), with_reasons(std::move(shares), share)};
 }
 
 }  // namespace haptrial::analysis::trials
