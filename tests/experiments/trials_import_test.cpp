@@ -353,6 +353,49 @@ error = 0.05
   }
 }
 
+/// A high standard beside a low comparison takes 0.22 s longer; the alphabet would exchange the
+/// two.
+TEST_F(TrialsImportTest, CombinationsAreReadInTheOrderOfTheFactorsAsWritten) {
+  test::write_text(folder_ / "two.toml", R"([experiment]
+protocol = "trials"
+name = "two"
+[design]
+participants = 5
+[factors]
+standard = ["low", "high"]
+comparison = ["low", "high"]
+[[blocks]]
+name = "trials"
+trials = 16
+[[stages]]
+name = "presented"
+until = { time = 0.0 }
+[[responses]]
+name = "answer"
+question = "answer"
+choices = [{ value = "go" }, { value = "stop" }]
+[analysis]
+kind = "times"
+tests = ["low, high < high, low"]
+)");
+  std::ofstream out(folder_ / "t.csv");
+  out << "participant,standard,comparison,response,correct,rt_s\n";
+  for (int person = 1; person <= 5; ++person) {
+    for (int trial = 0; trial < 16; ++trial) {
+      const bool standard = trial % 4 >= 2, comparison = trial % 2 == 1;
+      const double longer = standard && !comparison ? 0.2 + 0.01 * (person * 7 % 5) : 0.0;
+      out << fmt::format("P{},{},{},go,1,{:.4f}\n", person, standard ? "high" : "low",
+                         comparison ? "high" : "low", 0.5 + 0.003 * (trial / 4) + longer);
+    }
+  }
+  out.close();
+  const CommandResult made = run_command("haptrial import " + path("t.csv") + " --definition " +
+                                         path("two.toml") + " --out " + path("two"));
+  ASSERT_EQ(made.status, 0) << made.errors;
+  EXPECT_THAT(run_command("haptrial analyze " + path("two")).output,
+              HasSubstr("Planned, low, high < high, low: significant; difference -0.22,"));
+}
+
 TEST_F(TrialsImportTest, SettingsNeedAProcedure) {
   test::write_text(folder_ / "t.csv", "participant,level,answer\nP1,1,10.72\nP1,2,11.79\n");
   ASSERT_EQ(run_command("haptrial import " + path("t.csv") + " --kind magnitude --out " +

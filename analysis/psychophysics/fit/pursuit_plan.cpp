@@ -55,8 +55,7 @@ PursuitPlan read_pursuit_plan(Table& table, const PursuitNames& names) {
   using P = PursuitPlan;
   return Schema<P>()
       .text("stage", &P::stage, "Stage in which the target is pursued")
-      .derive(
-          [&](P& plan) { plan.target = names.targets.empty() ? "" : names.targets.front().name; })
+      .derive([&](P& plan) { plan.target = names.first; })
       .text("target", &P::target, "Target that is pursued")
       .otherwise("the first")
       .check([&](Table& t, P& plan) {

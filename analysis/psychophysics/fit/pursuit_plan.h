@@ -20,6 +20,7 @@ struct PursuedTarget {
 struct PursuitNames {
   std::vector<std::string> stages;
   std::vector<PursuedTarget> targets;  // in the order of names, as /targets numbers them
+  std::string first;                   // of the targets as they are written; empty: there is none
 };
 
 /// Content of [analysis] of kind "pursuit".

@@ -73,6 +73,20 @@ void check_baseline(Table& table, const PlanDefaults& defaults, const TrialsPlan
   }
 }
 
+/// The first factor whose levels are choices of the response, else the first factor.
+std::string usual_stimulus(const PlanDefaults& defaults) {
+  const auto named = std::ranges::find_if(defaults.factors, [&](const std::string& factor) {
+    const auto levels = defaults.levels.find(factor);
+    return levels != defaults.levels.end() &&
+           std::ranges::all_of(levels->second, [&](const std::string& level) {
+             return has_name(defaults.choices, level);
+           });
+  });
+  return named != defaults.factors.end() ? *named
+         : defaults.factors.empty()      ? ""
+                                         : defaults.factors.front();
+}
+
 void check_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   if (!has_name(defaults.factors, plan.stimulus) && !has_name(defaults.names, plan.stimulus)) {
     table.reject("stimulus", fmt::format("\"{}\"", plan.stimulus),
@@ -398,14 +412,14 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
         plan.rating = may_rate(plan) ? defaults.rating : "";
         if (identifies(plan)) {
           plan.choices = defaults.choices;
-          plan.stimulus = defaults.factors.empty() ? "" : defaults.factors.front();
+          plan.stimulus = usual_stimulus(defaults);
         }
       })
       .text("rating", &P::rating, "Question of how sure the participant was")
       .otherwise("the second question")
       .only_if(may_rate)
       .text("stimulus", &P::stimulus, "Factor that says which stimulus was presented")
-      .otherwise("the first factor")
+      .otherwise("the first factor whose levels are choices, else the first factor")
       .only_if(identifies)
       .check([&](Table& table, P& plan) {
         if (identifies(plan)) {
@@ -494,7 +508,8 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
                 check_by(table, defaults, plan);
               })
       .otherwise(
-          "all factors; of detection, identification, reaching, paired and times over a level none")
+          "all factors as written; of detection, identification, reaching, paired and times over a "
+          "level none")
       .derive([](P& plan) {
         if (plan.kind == AnalysisKind::kPaired) {
           plan.by.emplace_back(kItem);

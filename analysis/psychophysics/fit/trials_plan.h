@@ -54,10 +54,10 @@ struct ProcedureLevels {
 /// Values of the rest of a definition that stand in for keys that [analysis] does not have.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
-  std::vector<std::string> factors;         // that [factors] varies, and "group" of several groups
-  std::string rating;                       // question of how sure somebody is; empty: none
-  std::vector<std::string> choices;         // of the first question; none: a number
-  std::vector<std::string> names;           // that `by` may name besides
+  std::vector<std::string> factors;  // that [factors] varies, as written, and "group" of several
+  std::string rating;                // question of how sure somebody is; empty: none
+  std::vector<std::string> choices;  // of the first question; none: a number
+  std::vector<std::string> names;    // that `by` may name besides
   std::vector<ProcedureLevels> procedures;  // one for each variable
   std::optional<double> guess;              // 1 / choices where an answer is right; else free
   ReachingNames reaching;                   // that the analysis of movements may name

@@ -32,8 +32,9 @@ std::optional<double> guess_of(const protocols::TrialsDefinition& d) {
 }
 
 void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
-  for (const protocols::Factor& factor : d.order.factors) {
-    defaults.factors.push_back(factor.name);
+  Table root = d.root();
+  if (root.has("factors")) {
+    defaults.factors = root.table("factors").keys_as_written();
   }
   if (d.groups.size() > 1) {
     defaults.factors.emplace_back("group");
@@ -50,7 +51,6 @@ void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
       defaults.names.push_back(value.name);
     }
   }
-  Table root = d.root();
   if (root.has("variables")) {
     std::ranges::copy(root.table("variables").keys_as_written(),
                       std::back_inserter(defaults.names));
@@ -130,12 +130,14 @@ analysis::trials::CueNames cue_names(const protocols::TrialsDefinition& d) {
 
 /// The targets, with the frequencies that they have in every trial.
 analysis::trials::PursuitNames pursuit_names(const protocols::TrialsDefinition& d) {
-  analysis::trials::PursuitNames names{d.stages, {}};
+  analysis::trials::PursuitNames names{d.stages, {}, ""};
   Table root = d.root();
   if (!root.has("targets")) {
     return names;
   }
   Table targets = root.table("targets");
+  const std::vector<std::string> written = targets.keys_as_written();
+  names.first = written.empty() ? "" : written.front();
   for (const std::string& name : targets.keys()) {
     Table target = targets.table(name);
     names.targets.push_back({name, {}});

@@ -280,6 +280,26 @@ TEST(TrialsPlanTest, MetacognitionNeedsAQuestionOfConfidenceAndTwoStimuli) {
   EXPECT_THAT(problems_of(identification, d), HasSubstr("two choices"));
 }
 
+TEST(TrialsPlanTest, TheStimulusIsTheFactorWhoseLevelsAreChoices) {
+  PlanDefaults d = defaults();
+  d.factors = {"cond", "stim"};
+  d.levels = {{"cond", {"a", "b"}}, {"stim", {"weak", "strong"}}};
+  d.choices = {"weak", "strong"};
+  const std::string identification = "[analysis]\nkind = \"identification\"\n";
+  EXPECT_EQ(read(identification, d).stimulus, "stim");
+  EXPECT_EQ(read(identification + "stimulus = \"cond\"\n", d).stimulus, "cond");
+  d.choices = {"left", "right"};
+  EXPECT_EQ(read(identification, d).stimulus, "cond");
+}
+
+TEST(TrialsPlanTest, TheFirstTargetIsPursuedByItsNumber) {
+  PlanDefaults d = defaults();
+  d.pursuit = {{"pursue"}, {{"preview", {}}, {"tracked", {0.1}}}, "tracked"};
+  const PursuitPlan plan = read("[analysis]\nkind = \"pursuit\"\n", d).pursuit;
+  EXPECT_EQ(plan.target, "tracked");
+  EXPECT_EQ(plan.number, 1U);
+}
+
 TEST(TrialsPlanTest, ACovariateIsAScoreOfAPage) {
   PlanDefaults d = defaults();
   d.pages = {"hands"};
