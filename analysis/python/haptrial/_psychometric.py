@@ -49,6 +49,15 @@ def psychometric_function(function: str = "logistic", *, threshold: float, width
                                            share, tail)
 
 
+def _counts(values: npt.ArrayLike, name: str) -> npt.NDArray[np.int64]:
+    """Counts as integers; a cast alone would cut shares and other fractions off."""
+    given = np.asarray(values, dtype=float)
+    fractions = given[~(np.isfinite(given) & (given == np.rint(given)))]
+    if fractions.size:
+        raise ValueError(f"{name} has {fractions[0]:g}; allowed: whole numbers, of answers")
+    return given.astype(int)
+
+
 def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | None = None, *,
         function: str = "norm", guess: float | None = 0.5,
         lapse: tuple[float, float] = (0.0, 0.2), scale: str = "", origin: float = 0.0,
@@ -73,8 +82,8 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
               of answers without scatter
     participant, condition   of a report, "P01" and "soft, left": deviance_p is then drawn as there
     function, scale, origin, share, tail   as psychometric_function()"""
-    right = np.asarray(correct, dtype=int)
-    asked = np.ones_like(right) if total is None else np.asarray(total, dtype=int)
+    right = _counts(correct, "correct")
+    asked = np.ones_like(right) if total is None else _counts(total, "total")
     return Fit(**_haptrial.fit(np.asarray(levels, dtype=float), right.tolist(), asked.tolist(),
                                function, guess, lapse, scale, origin, share, tail, adaptive,
                                presentable, resamples, participant, condition))

@@ -94,6 +94,12 @@ class FitTest(unittest.TestCase):
             haptrial.fit([1.0, 2.0], [1, 0], function="sine")
         with self.assertRaises(ValueError):
             haptrial.fit([1.0, 2.0], [3, 0], [2, 2])
+        with self.assertRaisesRegex(ValueError, "correct has 0.55; allowed: whole numbers"):
+            haptrial.fit([1.0, 2.0], [0.55, 1.0], [20, 20])  # shares in place of counts
+        with self.assertRaisesRegex(ValueError, "total has 20.7; allowed: whole numbers"):
+            haptrial.fit([1.0, 2.0], [11, 14], [20.7, 20.7])
+        with self.assertRaisesRegex(ValueError, "correct has nan"):
+            haptrial.fit([1.0, 2.0], [0.0, math.nan])
         with self.assertRaisesRegex(ValueError, "allowed: linear, log10, ln, decibel"):
             haptrial.fit([1.0, 2.0], [1, 0], scale="log")
 
