@@ -31,6 +31,8 @@ double both_or_neither(double a, double b) { return below(a) * below(b) + below(
 
 double task_share(DiscriminationTask task, double d, int alternatives) {
   switch (task) {
+    case DiscriminationTask::kOneInterval:
+      return below(d / 2.0);
     case DiscriminationTask::kOddity:
       return oddity_share(d);
     case DiscriminationTask::kAbx:
@@ -49,6 +51,9 @@ Defined<double> task_d_prime(DiscriminationTask task, double share, int alternat
   }
   if (!(share > 0.0 && share < 1.0)) {
     return Undefined{"the share of right answers is 0 or 1"};
+  }
+  if (task == DiscriminationTask::kOneInterval) {
+    return std::numbers::sqrt2 * *forced_choice_d_prime(share, 2);
   }
   constexpr double kMost = 30.0;
   if (share <= task_share(task, 0.0, alternatives)) {

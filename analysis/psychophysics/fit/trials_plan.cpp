@@ -87,6 +87,18 @@ std::string usual_stimulus(const PlanDefaults& defaults) {
                                          : defaults.factors.front();
 }
 
+DiscriminationTask usual_task(const PlanDefaults& defaults) {
+  const bool alone = defaults.choices.size() == 2 && defaults.cues.intervals.size() < 2;
+  return alone ? DiscriminationTask::kOneInterval : DiscriminationTask::kForcedChoice;
+}
+
+void check_task(Table& table, const TrialsPlan& plan) {
+  if (plan.discrimination == DiscriminationTask::kOneInterval && plan.choices.size() != 2) {
+    table.reject("task", "\"one interval\"",
+                 "another one if the response does not have two choices");
+  }
+}
+
 void check_stimulus(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   if (!has_name(defaults.factors, plan.stimulus) && !has_name(defaults.names, plan.stimulus)) {
     table.reject("stimulus", fmt::format("\"{}\"", plan.stimulus),
@@ -413,6 +425,7 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
         if (identifies(plan)) {
           plan.choices = defaults.choices;
           plan.stimulus = usual_stimulus(defaults);
+          plan.discrimination = usual_task(defaults);
         }
       })
       .text("rating", &P::rating, "Question of how sure the participant was")
@@ -428,13 +441,20 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       })
       .choice("task", &P::discrimination,
               {{"forced choice", DiscriminationTask::kForcedChoice},
+               {"one interval", DiscriminationTask::kOneInterval},
                {"oddity", DiscriminationTask::kOddity},
                {"ABX", DiscriminationTask::kAbx},
                {"same-different", DiscriminationTask::kSameDifferent}},
               "Task whose d' is computed from the share of right answers: which of the stimuli it "
-              "was, which of three differs, whether the third is as the first or the second, "
-              "whether two are the same")
+              "was, which of two was presented alone, which of three differs, whether the third is "
+              "as the first or the second, whether two are the same")
+      .otherwise("forced choice; of two choices in trials of one interval: one interval")
       .only_if(identifies)
+      .check([](Table& table, P& plan) {
+        if (identifies(plan)) {
+          check_task(table, plan);
+        }
+      })
       .flag("metacognition", &P::metacognition,
             "Whether ratings of confidence give meta-d' and its ratio to d' (M-ratio), of two "
             "stimuli")

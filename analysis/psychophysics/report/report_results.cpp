@@ -173,6 +173,8 @@ std::string words_of(DiscriminationTask task, int alternatives) {
       return "who compares the third with either of the others by their differences";
     case DiscriminationTask::kSameDifferent:
       return "who judges each of two on its own and says whether both are the same";
+    case DiscriminationTask::kOneInterval:
+      return "who meets one of two stimuli in each trial, and is the distance between the two";
     case DiscriminationTask::kForcedChoice:
       break;
   }

@@ -167,7 +167,9 @@ double d_prime_of(double share, const TrialsPlan& plan) {
     return kEndless;
   }
   if (share <= 0.0) {
-    return plan.discrimination == DiscriminationTask::kForcedChoice ? -kEndless : 0.0;
+    const bool signed_d = plan.discrimination == DiscriminationTask::kForcedChoice ||
+                          plan.discrimination == DiscriminationTask::kOneInterval;
+    return signed_d ? -kEndless : 0.0;
   }
   const Defined<double> d =
       task_d_prime(plan.discrimination, share, static_cast<int>(plan.choices.size()));

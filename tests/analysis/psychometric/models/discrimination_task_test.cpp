@@ -26,6 +26,8 @@ constexpr JudgedTask kJudgedTasks[] = {
     {DiscriminationTask::kSameDifferent, 0.52, 0.506694},
     {DiscriminationTask::kSameDifferent, 0.75, 2.103592},
     {DiscriminationTask::kSameDifferent, 0.97, 4.328008},
+    {DiscriminationTask::kOneInterval, 0.75, 1.348980},  // 2 qnorm(0.75) of R
+    {DiscriminationTask::kOneInterval, 0.40, -0.506694},
 };
 
 TEST(DiscriminationTaskTest, AgreesWithPsyphy) {
@@ -39,7 +41,7 @@ TEST(DiscriminationTaskTest, SimulatedObserversAreAsOftenRight) {
   constexpr int kTrials = 100'000;
   constexpr double kD = 1.5;
   RandomStream random(1, "observers");
-  int odd = 0, abx = 0, same = 0;
+  int odd = 0, abx = 0, same = 0, one = 0;
   for (int i = 0; i < kTrials; ++i) {
     const double a = random.normal(), b = random.normal(), x = kD + random.normal();
     odd += std::abs(a - b) < std::min(std::abs(a - x), std::abs(b - x)) ? 1 : 0;
@@ -47,6 +49,7 @@ TEST(DiscriminationTaskTest, SimulatedObserversAreAsOftenRight) {
     abx += std::abs(as_other - other) < std::abs(as_other - a) ? 1 : 0;
     const auto is_high = [](double value) { return value > kD / 2.0; };
     same += is_high(a) == is_high(b) ? 1 : 0;
+    one += is_high(x) ? 1 : 0;
   }
   const auto expect = [&](int right, DiscriminationTask task) {
     EXPECT_NEAR(static_cast<double>(right) / kTrials, task_share(task, kD, 3), 0.005);
@@ -54,6 +57,7 @@ TEST(DiscriminationTaskTest, SimulatedObserversAreAsOftenRight) {
   expect(odd, DiscriminationTask::kOddity);
   expect(abx, DiscriminationTask::kAbx);
   expect(same, DiscriminationTask::kSameDifferent);
+  expect(one, DiscriminationTask::kOneInterval);
 }
 
 TEST(DiscriminationTaskTest, ChanceIsNoSensitivity) {

@@ -292,6 +292,22 @@ TEST(TrialsPlanTest, TheStimulusIsTheFactorWhoseLevelsAreChoices) {
   EXPECT_EQ(read(identification, d).stimulus, "cond");
 }
 
+TEST(TrialsPlanTest, OneOfTwoStimuliInATrialIsATaskOfOneInterval) {
+  PlanDefaults d = defaults();
+  const std::string identification = "[analysis]\nkind = \"identification\"\n";
+  const std::string one = identification + "task = \"one interval\"\n";
+  d.choices = {"left", "right"};
+  d.cues.intervals = {"only"};
+  EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kOneInterval);
+  d.cues.intervals = {"first", "second"};
+  EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kForcedChoice);
+  EXPECT_EQ(read(one, d).discrimination, DiscriminationTask::kOneInterval);
+  d.cues.intervals = {"only"};
+  d.choices.emplace_back("neither");
+  EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kForcedChoice);
+  EXPECT_THAT(problems_of(one, d), HasSubstr("two choices"));
+}
+
 TEST(TrialsPlanTest, TheFirstTargetIsPursuedByItsNumber) {
   PlanDefaults d = defaults();
   d.pursuit = {{"pursue"}, {{"preview", {}}, {"tracked", {0.1}}}, "tracked"};

@@ -153,12 +153,14 @@ TEST(Decisions, TwoStimuliThatAreIdentifiedHaveAnMRatio) {
   plan.kind = AnalysisKind::kIdentification;
   plan.stimulus = "shape";
   plan.choices = {"ball", "cube"};
+  plan.discrimination = DiscriminationTask::kOneInterval;
   plan.rating = "sure";
   plan.metacognition = true;
   plan.permutations = 0;
   const TrialsResult result = analyze(std::move(data), plan, {}, 1);
   ASSERT_TRUE(result.identified.front().meta) << result.identified.front().meta.because();
   EXPECT_NEAR(result.identified.front().meta->d_prime, 1.6, 0.15);
+  EXPECT_NEAR(*result.identified.front().d_prime, result.identified.front().meta->d_prime, 0.02);
   EXPECT_NEAR(result.identified.front().meta->ratio, 1.0, 0.15);
 }
 
