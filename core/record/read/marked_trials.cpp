@@ -1,7 +1,6 @@
 #include "core/record/read/marked_trials.h"
 
 #include <algorithm>
-#include <cctype>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -9,15 +8,11 @@
 #include "core/base/definition/schema.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/base/stated_words.h"
 #include "core/record/rows/session_tables.h"
 
 namespace haptrial::record {
 namespace {
-
-std::string lower_case(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// Takes "trial 5: the reason" apart; nothing for a mark before the first trial.
 std::optional<MarkedTrial> mark_of(const EventRow& event) {
@@ -93,9 +88,8 @@ bool is_presented_again(const SessionReader& reader, const std::vector<PassRow>&
 }  // namespace
 
 bool MarkRule::leaves_out(const std::string& reason) const {
-  const std::string given = lower_case(reason);
   return exclude && (words.empty() || std::ranges::any_of(words, [&](const std::string& word) {
-                       return given.find(lower_case(word)) != std::string::npos;
+                       return has_stated_word(reason, word);
                      }));
 }
 

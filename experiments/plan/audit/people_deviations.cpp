@@ -2,20 +2,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
+#include "core/base/stated_words.h"
 #include "experiments/plan/audit/stated_and_done.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
 namespace {
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
 
 /// The group of a participant, or "" if the plan has none for the identifier.
 std::string planned_group(const StudyPlan& plan, const std::string& subject) {
@@ -53,7 +48,7 @@ void add_sessions(const PlannedStudy& study, std::vector<Deviation>& deviations)
 bool is_stated(const StudyPlan& plan, const std::vector<std::string>& reasons) {
   return std::ranges::any_of(reasons, [&](const std::string& reason) {
     return std::ranges::any_of(plan.exclusions, [&](const std::string& stated) {
-      return !stated.empty() && lower(reason).find(lower(stated)) != std::string::npos;
+      return has_stated_word(reason, stated);
     });
   });
 }

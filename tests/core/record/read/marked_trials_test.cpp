@@ -73,6 +73,8 @@ TEST_F(MarkedTrialsTest, OnlyTheRuleLeavesTrialsOut) {
   EXPECT_EQ(left_out_, (std::set<int>{1, 3})) << "practice is none of the study's trials";
   marks("exclude_marked = true\nexclude_words = [\"PHONE\", \"door\"]");
   EXPECT_EQ(left_out_, std::set<int>{1});
+  marks("exclude_marked = true\nexclude_words = [\"hon\", \"slip\"]");
+  EXPECT_TRUE(left_out_.empty()) << "parts of words";
   marks("exclude_marked = false");
   EXPECT_TRUE(left_out_.empty());
 }
