@@ -139,7 +139,9 @@ void add_binormal_methods(Document& document, const TrialsResult& result) {
   }
 }
 
-/// Sentences on the tests of quantities that are compared, each once.
+/// Sentences on the tests of quantities that are compared, each once. A quantity whose conditions
+/// have no defined test, such as errors that nobody made, does not say how conditions were compared
+/// if another one does.
 std::string compared_words(const TrialsResult& result) {
   std::vector<std::string> all;
   const auto add = [&all](const std::string& sentence) {
@@ -147,13 +149,28 @@ std::string compared_words(const TrialsResult& result) {
       all.push_back(sentence);
     }
   };
+  const auto has_effect = [](const Quantity& quantity) {
+    return std::ranges::any_of(quantity.tests.effects, [](const auto& e) { return bool(e); });
+  };
+  const bool any_effect = std::ranges::any_of(result.quantities, has_effect);
+  if (!result.plan.baseline.empty()) {
+    add(
+        fmt::format("Values are changes: those under a condition less the same participant's in "
+                    "the session {}.",
+                    result.plan.baseline));
+  }
   for (const Quantity& quantity : result.quantities) {
     if (quantity.compared && quantity.table.cells.size() > 1) {
-      add(comparison_words(quantity.tests));
+      if (!any_effect || has_effect(quantity)) {
+        add(comparison_words(quantity.tests));
+      }
       std::ranges::for_each(sentences_beside(quantity.tests, tested_title(result, quantity)), add);
     }
   }
-  return all.empty() ? " No conditions were compared." : fmt::format(" {}", fmt::join(all, " "));
+  if (std::ranges::none_of(result.quantities, &Quantity::compared)) {
+    add("No conditions were compared.");
+  }
+  return fmt::format(" {}", fmt::join(all, " "));
 }
 
 void add_methods(Document& document, const TrialsResult& result) {

@@ -19,6 +19,22 @@ std::string degrees(double df) {
   return df == std::floor(df) ? fmt::format("{:.0f}", df) : fmt::format("{:.1f}", df);
 }
 
+/// "was looked at after 6, 12 participants (planned: 6, 12, 24)".
+std::string words_of_looks(const SequentialResult& result) {
+  const std::string planned = fmt::format("{:g}", fmt::join(result.plan.looks, ", "));
+  std::vector<std::size_t> taken;
+  for (const SequentialLook& look : result.looks) {
+    taken.push_back(look.participants);
+  }
+  if (taken.empty()) {
+    return fmt::format("was not yet looked at (planned: after {} participants)", planned);
+  }
+  return fmt::format("was looked at after {} participants{}", fmt::join(taken, ", "),
+                     taken.size() == result.plan.looks.size()
+                         ? std::string()
+                         : fmt::format(" (planned: {})", planned));
+}
+
 /// The rule by which a study may end before its last participant.
 std::string words_of_rule(const SequentialResult& result, const std::string& of) {
   const SequentialPlan& plan = result.plan;
@@ -32,9 +48,9 @@ std::string words_of_rule(const SequentialResult& result, const std::string& of)
         plan.none > 0.0 ? fmt::format(" for it or {:g} against it", plan.none) : "", plan.error);
   }
   return fmt::format(
-      "The test {} ({}) was looked at after {:g} participants; the bounds of z spend an error of "
-      "{:g} over these looks as Lan and DeMets (1983) do, in {} way.",
-      text_of(result.test), of, fmt::join(plan.looks, ", "), plan.error,
+      "The test {} ({}) {}; the bounds of z spend an error of {:g} over the planned looks as Lan "
+      "and DeMets (1983) do, in {} way.",
+      text_of(result.test), of, words_of_looks(result), plan.error,
       plan.spending == Spending::kPocock ? "Pocock's" : "O'Brien and Fleming's");
 }
 

@@ -140,6 +140,35 @@ TEST(TrialsTextTest, MethodsStateTheRuleByWhichIntervalsAreWidened) {
   EXPECT_EQ(kUnusualScatter, 0.2);
 }
 
+/// Reaction times, and errors that nobody made, before and after.
+TEST(TrialsTextTest, MethodsSayOnceHowConditionsAndThatChangesWereCompared) {
+  TrialsResult result;
+  result.plan.kind = AnalysisKind::kTimes;
+  result.plan.by = {"side", "session"};
+  result.plan.baseline = "before";
+  result.plan.permutations = 99;
+  std::vector<QuantityValue> times, errors;
+  for (int person = 0; person < 6; ++person) {
+    const std::string name = fmt::format("P{}", person);
+    for (const char* side : {"left", "right"}) {
+      for (const char* session : {"before", "after"}) {
+        const bool slower = side == std::string("right") && session == std::string("after");
+        times.push_back({name, {side, session}, 0.5 + (slower ? 0.1 + 0.01 * person : 0.0)});
+        errors.push_back({name, {side, session}, 0.0});
+      }
+    }
+  }
+  result.quantities = {quantity("time", "time", "s", times, result.plan),
+                       quantity("errors", "errors", "", errors, result.plan)};
+  const std::string report = to_markdown(trials_report(result, {}));
+  EXPECT_THAT(report, HasSubstr("less the same participant's in the session before."));
+  const std::string compared = "Conditions were compared by ";
+  const std::size_t first = report.find(compared);
+  ASSERT_NE(first, std::string::npos);
+  EXPECT_EQ(report.find(compared, first + 1), std::string::npos);
+  EXPECT_THAT(report, Not(HasSubstr("the tests of the tables")));
+}
+
 TEST(TrialsTextTest, TicksOnWhichABodyWasNotFeltAsItShouldBeAreTold) {
   TrialsResult result;
   StudyTrial trial;

@@ -105,6 +105,21 @@ TEST(SequentialLooksTest, GroupsAreLookedAtWhenTheyAreComplete) {
   EXPECT_EQ(result.most, 30u);
 }
 
+TEST(SequentialLooksTest, MethodsStateTheLooksThatWereTaken) {
+  const SequentialPlan plan = by_looks({6, 12, 18});
+  const Simulated study(18, 0.0, 6);
+  const auto sentence = [&](std::size_t came) {
+    DesignTests tests;
+    tests.sequential =
+        sequential_result(study.table, kTest, plan, std::span(study.order).first(came), 18);
+    return sentences_beside(tests, "force").back();
+  };
+  EXPECT_THAT(sentence(5), HasSubstr("was not yet looked at (planned: after 6, 12, 18 partic"));
+  EXPECT_THAT(sentence(13),
+              HasSubstr("was looked at after 6, 12 participants (planned: 6, 12, 18);"));
+  EXPECT_THAT(sentence(18), HasSubstr("was looked at after 6, 12, 18 participants; the bounds"));
+}
+
 TEST(SequentialLooksTest, WithoutValuesItGoesOnUntilNobodyMayCome) {
   const Simulated study(9, 0.0, 7);
   const PlannedTest other{"a", "c", Tail::kLess};
