@@ -394,6 +394,11 @@ tests = ["low, high < high, low"]
   ASSERT_EQ(made.status, 0) << made.errors;
   EXPECT_THAT(run_command("haptrial analyze " + path("two")).output,
               HasSubstr("Planned, low, high < high, low: significant; difference -0.22,"));
+  // The 80 trials, counted by condition.
+  const std::string report = test::read_text(folder_ / "two/report.md");
+  for (const char* condition : {"low, low", "low, high", "high, low", "high, high"}) {
+    EXPECT_THAT(report, HasSubstr(fmt::format("| {} | 20 |", condition)));
+  }
 }
 
 TEST_F(TrialsImportTest, SettingsNeedAProcedure) {

@@ -34,18 +34,13 @@ class SessionRows {
       add_variable({row_, 0, "probe", std::numeric_limits<double>::quiet_NaN(),
                     trial.probe.empty() ? "no" : trial.probe});
     }
-    std::string condition = "trials";
     for (std::size_t i = 0; i < trial.factors.size(); ++i) {
-      const std::string& name = study_.columns.factors[i].variable;
       const ImportedValue& value = trial.factors[i];
-      if (name == "condition") {
-        condition = value.word.empty() ? fmt::format("{}", value.number) : value.word;
-      }
-      add_variable({row_, 0, name, value.number, value.word});
+      add_variable({row_, 0, study_.columns.factors[i].variable, value.number, value.word});
     }
     record::PassRow pass;
     pass.trial = row_ + 1;
-    pass.condition = condition;
+    pass.condition = condition_of(trial);
     pass.phase = record::Phase(record::kPresentedPhase);
     pass.block = trial.block;
     pass.repetition = ++repetitions_[trial.block];
@@ -55,6 +50,19 @@ class SessionRows {
   }
 
  private:
+  /// The level of a factor that is called "condition", else the levels of all factors.
+  std::string condition_of(const ImportedTrial& trial) const {
+    std::vector<std::string> levels;
+    for (std::size_t i = 0; i < trial.factors.size(); ++i) {
+      const ImportedValue& value = trial.factors[i];
+      levels.push_back(value.word.empty() ? fmt::format("{}", value.number) : value.word);
+      if (study_.columns.factors[i].variable == "condition") {
+        return levels.back();
+      }
+    }
+    return levels.empty() ? "trials" : fmt::format("{}", fmt::join(levels, ", "));
+  }
+
   void add_variable(const record::VariableRow& row) { writer_.add(std::span(&row, 1)); }
 
   void add_answers(const ImportedTrial& trial) {
