@@ -393,7 +393,7 @@ tests = ["low, high < high, low"]
                                          path("two.toml") + " --out " + path("two"));
   ASSERT_EQ(made.status, 0) << made.errors;
   EXPECT_THAT(run_command("haptrial analyze " + path("two")).output,
-              HasSubstr("Planned, low, high < high, low: significant; difference -0.22,"));
+              HasSubstr("Planned, low, high < high, low: significant; difference -0.2200, "));
   // The 80 trials, counted by condition.
   const std::string report = test::read_text(folder_ / "two/report.md");
   for (const char* condition : {"low, low", "low, high", "high, low", "high, high"}) {
