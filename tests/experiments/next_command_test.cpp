@@ -125,6 +125,19 @@ TEST_F(NextCommandTest, ARuleThatMissesEffectsIsWarnedOf) {
                              HasSubstr("fewest is 20, but design.participants is 12")));
 }
 
+TEST_F(NextCommandTest, ARuleOfAnotherQuantityThanThePlannedOneIsWarnedOf) {
+  const auto warned = HasSubstr("ends by a test of another quantity");
+  set("tests_of", "'\"share_wrong\"'");
+  set("sequential.rule", "'\"bayes factor\"'");
+  EXPECT_THAT(run("validate crossmodal_congruency.toml").output, Not(warned));
+  ASSERT_EQ(run("plan crossmodal_congruency.toml --out plan").status, 0);
+  EXPECT_THAT(file_text(folder_ / "plan/crossmodal_congruency.plan.json"),
+              testing::AllOf(HasSubstr("congruent < incongruent, of share_wrong"),
+                             HasSubstr("of analysis.sequential decides, of share_wrong")));
+  set("sequential.of", "'\"reaction_time\"'");
+  EXPECT_THAT(run("validate crossmodal_congruency.toml").output, warned);
+}
+
 TEST_F(NextCommandTest, AFileIsNoFolder) {
   const CommandResult wrong = run("next crossmodal_congruency.toml congruency.py");
   EXPECT_EQ(wrong.status, 2);

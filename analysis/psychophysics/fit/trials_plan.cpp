@@ -564,6 +564,9 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
       .otherwise("none");
   add_answers(schema, defaults);
   schema.check([&](Table& table, P& plan) {
+    if (plan.plan.sequential && plan.plan.sequential->of.empty()) {
+      plan.plan.sequential->of = plan.tests_of;
+    }
     plan.functions = plan.kind == AnalysisKind::kPsychometric ||
                      (plan.kind == AnalysisKind::kDetection && table.has("function"));
     if (plan.functions) {

@@ -167,7 +167,8 @@ void separate_secondary(std::vector<Quantity>& all, const TrialsPlan& plan) {
                         by_rule ? "analysis.sequential.of" : "analysis.tests_of");
   const auto is_secondary = [&](const Quantity& q) { return q.compared && &q != primary; };
   TestFamily together{"secondary", {}};
-  for (const Quantity& each : all) {
+  for (Quantity& each : all) {
+    each.tests.ends_by_rule = rule.has_value();
     if (is_secondary(each)) {
       const auto& own = each.tests.planned.tests;
       together.tests.insert(together.tests.end(), own.begin(), own.end());

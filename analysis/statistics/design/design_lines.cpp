@@ -37,15 +37,16 @@ bool is_significant(const SideTest& test, const std::optional<SequentialResult>&
 }
 
 /// A test that finds nothing says what it cannot exclude.
-std::string line_of(const std::string& family, const SideTest& test,
-                    const std::optional<SequentialResult>& rule) {
-  const std::string name = capitalized(family) + ", " + text_of(test.sides);
+std::string line_of(const DesignTests& tests, const SideTest& test) {
+  const std::optional<SequentialResult>& rule = tests.sequential;
+  const std::string name = capitalized(tests.planned.name) + ", " + text_of(test.sides);
   if (!test.t || !test.holm) {
     return fmt::format("{}: not defined, because {}", name, test.t.because());
   }
   const std::string result =
-      side_result(test) +
-      (rule ? "; p and intervals as if the number of participants had been fixed" : "");
+      side_result(test) + (tests.ends_by_rule
+                               ? "; p and intervals as if the number of participants had been fixed"
+                               : "");
   if (is_significant(test, rule)) {
     return fmt::format("{}: significant; {}", name, result);
   }
@@ -166,7 +167,7 @@ std::vector<std::string> effect_lines(const DesignTests& tests) {
 std::vector<std::string> planned_lines(const DesignTests& tests) {
   std::vector<std::string> lines;
   for (const SideTest& test : tests.planned.tests) {
-    lines.push_back(line_of(tests.planned.name, test, tests.sequential));
+    lines.push_back(line_of(tests, test));
   }
   if (tests.sequential) {
     lines.push_back("When the study ends: " + words_of(*tests.sequential));

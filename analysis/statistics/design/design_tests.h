@@ -47,6 +47,7 @@ struct DesignTests {
   Defined<RankAnova> ranks{Undefined{"it is for one factor"}};  // Friedman, or Kruskal and Wallis
   TestFamily planned;
   std::optional<SequentialResult> sequential;  // of the quantity that decides when a study ends
+  bool ends_by_rule{false};                    // the study, by this or another quantity
   std::vector<TestFamily> families;            // without a hypothesis: two-tailed
 };
 

@@ -39,7 +39,7 @@ const Schema<SequentialPlan>& sequential_schema() {
           .text("test", &P::test, "The planned test that decides, as it is stated there")
           .otherwise("the first planned test")
           .text("of", &P::of, "The quantity whose test decides, by its name in results.json")
-          .otherwise("the first that is compared")
+          .otherwise("that of tests_of, else the first that is compared")
           .number(
               "error", &P::error, {0.001, 0.2}, "1",
               "Probability with which a study without an effect may end for one, over all looks")

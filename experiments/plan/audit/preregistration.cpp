@@ -24,6 +24,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// ", of share_wrong": the quantity of the planned tests and of the rule that ends the study, which
+/// share it unless both state one. Empty: the first that is compared.
+std::string stated_quantity(Table& analysis, bool of_rule) {
+  const std::string tests = analysis.has("tests_of") ? analysis.text("tests_of") : "";
+  std::string rule;
+  if (analysis.has("sequential") && analysis.table("sequential").has("of")) {
+    rule = analysis.table("sequential").text("of");
+  }
+  const std::string& name = (of_rule && !rule.empty()) || tests.empty() ? rule : tests;
+  return name.empty() ? "" : ", of " + name;
+}
+
 /// Planned tests as the definition writes them, under the key that its protocol has.
 std::vector<std::string> planned_tests(const protocols::Definition& definition) {
   Table root = definition.root();
@@ -33,7 +45,11 @@ std::vector<std::string> planned_tests(const protocols::Definition& definition) 
   Table analysis = root.table("analysis");
   for (const char* key : {"planned", "tests"}) {
     if (analysis.has(key)) {
-      return analysis.texts(key);
+      std::vector<std::string> tests = analysis.texts(key);
+      for (std::string& test : tests) {
+        test += stated_quantity(analysis, false);
+      }
+      return tests;
     }
   }
   return {};
@@ -45,15 +61,17 @@ void add_early_end(const protocols::Definition& definition, StudyPlan& plan) {
   if (!root.has("analysis") || !root.table("analysis").has("sequential")) {
     return;
   }
-  Table table = root.table("analysis").table("sequential");
+  Table analysis = root.table("analysis");
+  Table table = analysis.table("sequential");
   const auto rule = analysis::sequential_schema().read(table);
   const bool at_looks = rule.rule == analysis::StopRule::kGroupSequential;
   plan.ends_early = at_looks ? "group sequential" : kAtAnyTime;
   for (const double look : rule.looks) {
     plan.looks.push_back(static_cast<int>(look));
   }
-  plan.stopping += fmt::format(
-      "; or earlier, as soon as the rule \"{}\" of analysis.sequential decides", plan.ends_early);
+  plan.stopping +=
+      fmt::format("; or earlier, as soon as the rule \"{}\" of analysis.sequential decides{}",
+                  plan.ends_early, stated_quantity(analysis, true));
 }
 
 /// When the data is analysed before the end.

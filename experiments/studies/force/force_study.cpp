@@ -85,6 +85,7 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
         fmt::format("{}: no session {}holds a completed test pass, so nothing can be scored",
                     request.folder.string(), study.tests.empty() ? "" : "that trains "));
   }
+  study.statistics.tests.ends_by_rule = plan.sequential.has_value();
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
   if (plan.sequential) {
     study.statistics.tests.sequential = analysis::sequential_result(

@@ -219,6 +219,13 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
   const trials::TrialsPlan plan = plan_of(trials_of(d));
   std::vector<std::string> warnings =
       analysis::sequential_warnings(plan.plan, d.design.participants);
+  const auto& rule = plan.plan.sequential;
+  if (rule && !plan.tests_of.empty() && rule->of != plan.tests_of) {
+    warnings.push_back(fmt::format(
+        "analysis.tests_of is \"{}\", but analysis.sequential.of is \"{}\": the study ends by a "
+        "test of another quantity than the planned tests are of",
+        plan.tests_of, rule->of));
+  }
   if (plan.kind == trials::AnalysisKind::kAdjustment && trials_of(d).tracks.empty()) {
     warnings.emplace_back(
         "analysis.kind is \"adjustment\", whose settings are the levels of procedures, and there "

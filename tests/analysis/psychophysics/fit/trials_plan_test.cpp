@@ -308,6 +308,14 @@ TEST(TrialsPlanTest, OneOfTwoStimuliInATrialIsATaskOfOneInterval) {
   EXPECT_THAT(problems_of(one, d), HasSubstr("two choices"));
 }
 
+TEST(TrialsPlanTest, TheRuleThatEndsAStudyLooksAtThePlannedQuantity) {
+  const std::string text =
+      "[analysis]\ntests = [\"a < b\"]\ntests_of = \"width\"\n[analysis.sequential]\n"
+      "rule = \"bayes factor\"\n";
+  EXPECT_EQ(read(text).plan.sequential->of, "width");
+  EXPECT_EQ(read(text + "of = \"threshold\"\n").plan.sequential->of, "threshold");
+}
+
 TEST(TrialsPlanTest, TheFirstTargetIsPursuedByItsNumber) {
   PlanDefaults d = defaults();
   d.pursuit = {{"pursue"}, {{"preview", {}}, {"tracked", {0.1}}}, "tracked"};

@@ -310,6 +310,9 @@ TEST(DesignLines, TheRuleOfAStudyDecidesItsTest) {
   plan.tests = {{"a", "b", Tail::kLess}};
   DesignTests tests = design_tests(design_table(made.observations, {"c"}), plan, kNone);
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("significant"));
+  tests.ends_by_rule = true;  // as the test of another quantity decides
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("significant"));
+  EXPECT_THAT(planned_lines(tests).front(), HasSubstr("had been fixed"));
   tests.sequential = SequentialResult{plan.tests.front(), {}, 20, {}, SequentialVerdict::kGoOn};
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("a < b: not decided yet"));
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("had been fixed"));
