@@ -269,6 +269,27 @@ TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
   const auto& stiffness = json["identified"]["stiffness_N_per_m"];
   EXPECT_NEAR(stiffness["value"].get<double>(), 600.0, 3.0);
 
+  // The table's force clock is late, which says nothing of the session, and the other way round.
+  run("mkdir late; "
+      "awk -F, 'NR == 1 { print; next } { printf \"%s,%g,%g,%g\\n\", $1, $2 / 2, $3 / 2, $4 / 2 }' "
+      "rubbed/poses.csv > late/poses.csv; "
+      "awk -F, 'NR == 1 { print; next } { printf \"%g,%s,%s,%s\\n\", $1 + 0.04, $2, $3, $4 }' "
+      "rubbed/forces.csv > late/forces.csv");
+  const std::string rest = " --mesh ball.obj --renderer proxy --stiffness 600 --out ";
+  ASSERT_EQ(run("haptrial evaluate late" + rest + "alone").status, 0);
+  const auto on_table = run("haptrial evaluate study/S01.h5 --test-on late" + rest + "on_table");
+  ASSERT_EQ(on_table.status, 0) << on_table.errors;
+  const auto on_session =
+      run("haptrial evaluate late --test-on study/S01.h5" + rest + "on_session");
+  ASSERT_EQ(on_session.status, 0) << on_session.errors;
+  const double alone = numbers("alone")["best_friction"]["root_mean_square_with_N"];
+  const auto error = [&](const char* folder, int i) {
+    return numbers(folder)["cross_fit"]["root_mean_square_N"][i][i].get<double>();
+  };
+  EXPECT_NEAR(error("on_table", 1), alone, 1e-9);
+  EXPECT_NEAR(error("on_session", 0), alone, 1e-9);
+  EXPECT_NEAR(error("on_session", 1), error("on_table", 0), 1e-9);
+
   const auto refused = [&](const std::string& options, const std::string& why) {
     const auto bad = run(line + options);
     EXPECT_EQ(bad.status, 2) << options;

@@ -75,6 +75,14 @@ void remark(Evaluation& result) {
       "Times are those of this computer; operations are the same on every one.");
 }
 
+PreparedContact prepare_named(const NamedRecording& given, const contact::FeltBody& body) {
+  try {
+    return prepare_contact(given.recording, body, given.prepare);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(fmt::format("{}: {}", given.name, error.what()));
+  }
+}
+
 }  // namespace
 
 EvaluatedRendering measured_rendering(const PreparedContact& contact, const contact::FeltBody& body,
@@ -162,7 +170,7 @@ void add_cross_fit(Evaluation& evaluation, const std::string& name,
   std::vector<FeltContact> contacts{{&evaluation.contact, &body}};
   for (const NamedRecording& other : others) {
     cross.names.push_back(other.name);
-    prepared.push_back(prepare_contact(other.recording, body, options.prepare));
+    prepared.push_back(prepare_named(other, body));
     for (const std::string& remark : prepared.back().remarks) {
       evaluation.remarks.push_back(fmt::format("{}: {}", other.name, remark));
     }

@@ -43,10 +43,11 @@ struct OtherRendering {
   NoticeableError noticeable;
 };
 
-/// Another recording of the same body with the same probe.
+/// Another recording of the same body with the same probe. Its clocks and its load are its own.
 struct NamedRecording {
   std::string name;
   ContactRecording recording;
+  PrepareOptions prepare;
 };
 
 /// Friction that was fitted on each of several recordings, tested on all of them.
@@ -79,8 +80,9 @@ Evaluation evaluate_rendering(const ContactRecording& recording, const contact::
 /// Tests on other recordings of the body the friction that fits this one best, and the other way
 /// round, by the first of the renderers that has friction. Remarks on the others begin with their
 /// names.
-/// @param name  of the evaluated recording  @param others  prepared with the same options
-/// @throws std::invalid_argument without such a renderer, and as prepare_contact().
+/// @param name  of the evaluated recording
+/// @throws std::invalid_argument without such a renderer, and as prepare_contact(), after the name
+/// of the recording that is at fault.
 void add_cross_fit(Evaluation& evaluation, const std::string& name,
                    const std::vector<NamedRecording>& others, const contact::FeltBody& body,
                    const EvaluationOptions& options);

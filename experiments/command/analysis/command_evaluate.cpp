@@ -197,14 +197,16 @@ void warn_of_times(const char* what, const Stream& stream) {
   }
 }
 
-/// A recording and what it is called.
+/// A recording, its names in a report and how it is prepared.
 struct GivenRecording {
   evaluation::ContactRecording recording;
   evaluation::EvaluationNames names;
+  evaluation::PrepareOptions prepare;
 };
 
 /// Reads the given recording; the streams of a session file have one clock and no load.
-GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& prepare) {
+/// @param prepare  as the options say
+GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions prepare) {
   const fs::path first(o.recording.front());
   evaluation::EvaluationNames names{first.filename().string(), fs::path(o.mesh).filename().string(),
                                     o.simulated, unit_of(o.units)};
@@ -215,7 +217,7 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& 
     evaluation::ContactRecording recording = read_tables(o.recording);
     warn_of_times("poses", recording.pose);
     warn_of_times("forces", recording.force);
-    return {std::move(recording), names};
+    return {std::move(recording), names, prepare};
   }
   evaluation::SessionContact contact =
       evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});
@@ -225,12 +227,12 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions& 
   }
   names.recording += fmt::format(", {} in trial {}", contact.object, contact.trial);
   names.simulated = names.simulated || contact.simulated;
-  return {std::move(contact.recording), names};
+  return {std::move(contact.recording), names, prepare};
 }
 
-/// Recordings of --test-on. What the first recording's session file says of itself holds only
-/// there.
-std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
+/// Recordings of --test-on, each prepared as if it were given alone.
+std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o,
+                                                    const evaluation::PrepareOptions& prepare) {
   std::vector<evaluation::NamedRecording> others;
   for (const std::string& path : o.tested_on) {
     EvaluateOptions other = o;
@@ -239,9 +241,8 @@ std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o) {
     if (fs::path(path).extension() != ".h5") {
       other.object.reset();
     }
-    evaluation::PrepareOptions ignored;
-    auto [recording, names] = read_given(other, ignored);
-    others.push_back({names.recording, std::move(recording)});
+    GivenRecording given = read_given(other, prepare);
+    others.push_back({given.names.recording, std::move(given.recording), given.prepare});
   }
   return others;
 }
@@ -319,8 +320,9 @@ int evaluate(const EvaluateOptions& options) {
   }
   evaluation::EvaluationOptions chain = evaluation_options(options);
   const double unit = unit_of(options.units);
-  const auto [recording, names] = read_given(options, chain.prepare);
-  const std::vector<evaluation::NamedRecording> others = read_others(options);
+  const auto [recording, names, prepare] = read_given(options, chain.prepare);
+  const std::vector<evaluation::NamedRecording> others = read_others(options, chain.prepare);
+  chain.prepare = prepare;
   std::vector<Rendered> rendered = read_rendered(options.rendered);
   const contact::FeltBody body(load_mesh({options.mesh, unit, {}}, MemoryBudget({})));
   try {
@@ -331,11 +333,15 @@ int evaluate(const EvaluateOptions& options) {
   evaluation::Evaluation found;
   try {
     found = evaluation::evaluate_rendering(recording, body, chain);
-    if (!others.empty()) {
-      evaluation::add_cross_fit(found, names.recording, others, body, chain);
-    }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", options.recording.front(), error.what()));
+  }
+  if (!others.empty()) {
+    try {
+      evaluation::add_cross_fit(found, names.recording, others, body, chain);
+    } catch (const std::invalid_argument& error) {
+      throw InputError(error.what());
+    }
   }
   for (Rendered& each : rendered) {
     found.others.push_back(judged(found.contact, std::move(each)));

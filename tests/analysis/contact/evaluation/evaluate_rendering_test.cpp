@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "analysis/contact/demo_study/simulated_probe.h"
+#include "analysis/contact/truth/true_contact.h"
 #include "core/base/random.h"
 #include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
-#include "analysis/contact/truth/true_contact.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::evaluation {
@@ -179,6 +179,33 @@ TEST(EvaluateRenderingTest, WithoutFrictionTheRenderingIsRight) {
   EXPECT_LT(e.friction->friction, 0.01);
   ASSERT_TRUE(e.identified && e.identified->dynamic_friction);
   EXPECT_TRUE(e.identified->dynamic_friction->holds(0.0));
+}
+
+/// The other recording's force clock is late; the evaluated one's is not.
+TEST(EvaluateRenderingTest, AnotherRecordingIsPreparedAsIfGivenAlone) {
+  constexpr double kLate = 0.04;
+  ContactRecording late = rubbed_sphere(kFriction);
+  for (double& t : late.force.time) {
+    t += kLate;
+  }
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kProxy};
+  EvaluationOptions of_late = options;
+  of_late.prepare.lag = kLate;
+  Evaluation e = evaluate_rendering(rubbed_sphere(kFriction), sphere(), options);
+  const Evaluation alone = evaluate_rendering(late, sphere(), of_late);
+  add_cross_fit(e, "first", {{"late", late, of_late.prepare}}, sphere(), options);
+  EXPECT_EQ(e.cross->fit.own[1].friction, alone.friction->friction);
+  EXPECT_NEAR(e.cross->fit.error[1][1], alone.friction->with, 1e-12);
+  EXPECT_NEAR(e.cross->fit.error[0][1], e.cross->fit.error[0][0], 0.01);
+  ContactRecording apart = late;
+  for (double& t : apart.force.time) {
+    t += 1000.0;
+  }
+  EXPECT_THAT(test::message_of<std::invalid_argument>([&] {
+                add_cross_fit(e, "first", {{"apart", apart, of_late.prepare}}, sphere(), options);
+              }),
+              testing::StartsWith("apart: "));
 }
 
 TEST(EvaluateRenderingTest, CostsAreMeasured) {
