@@ -24,6 +24,14 @@ struct Front {
   MatrixXd stiffness;
 };
 
+/// Subtracts aᵀ a from the lower half. Eigen's product divides by the number of rows, and there are
+/// none where nothing lies between the vertices that are kept, as in a body one cell thick.
+void subtract_square(const MatrixXd& a, MatrixXd& lower) {
+  if (a.rows() > 0) {
+    lower.selfadjointView<Eigen::Lower>().rankUpdate(a.transpose(), -1.0);
+  }
+}
+
 class Condenser {
  public:
   Condenser(const BlockMatrix& k, std::span<const Vector3d> at, std::span<const std::uint8_t> held)
@@ -194,7 +202,7 @@ class Condenser {
     MatrixXd across = whole.bottomLeftCorner(rest, own).transpose();
     factors.matrixL().solveInPlace(across);
     front.stiffness = whole.bottomRightCorner(rest, rest);
-    front.stiffness.selfadjointView<Eigen::Lower>().rankUpdate(across.transpose(), -1.0);
+    subtract_square(across, front.stiffness);
     return front;
   }
 
@@ -254,7 +262,7 @@ SurfaceInverse surface_inverse(const BlockMatrix& stiffness, std::span<const Vec
   MatrixXd follow = whole.bottomLeftCorner(top, deep).transpose();
   MatrixXd second = whole.bottomRightCorner(top, top);
   first_factors.matrixL().solveInPlace(follow);
-  second.selfadjointView<Eigen::Lower>().rankUpdate(follow.transpose(), -1.0);
+  subtract_square(follow, second);
   first_factors.matrixU().solveInPlace(follow);
   const Eigen::LLT<Eigen::Ref<MatrixXd>> second_factors(second);
   MatrixXd root = MatrixXd::Identity(top, top);

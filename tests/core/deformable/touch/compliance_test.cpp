@@ -68,6 +68,16 @@ TEST(ComplianceTest, AVoxelBodyTouchedAllOverRespondsAsTheElements) {
             1e-5);
 }
 
+TEST(ComplianceTest, ABodyOneCellThickRespondsAsTheElements) {
+  for (const Vector3d& size : {Vector3d(0.06, 0.04, 0.006), Vector3d(0.04, 0.006, 0.06)}) {
+    const auto mesh = std::make_shared<const HapticMesh>(felt_block(size, 10, FeltSides{}, "skin"));
+    const Compliance body(mesh, soft_tissue());
+    EXPECT_EQ(body.touched(), body.places()) << "nothing lies below the surface";
+    EXPECT_LT(largest_error(body, soft_tissue(), static_cast<std::int32_t>(body.touched() / 2)),
+              1e-5);
+  }
+}
+
 TEST(ComplianceTest, AHeldPlaceDoesNotMoveAndABallThatReachesItHasNoBound) {
   FeltSides sides;  // all but the bottom: the sides reach down to held vertices
   const auto mesh =
