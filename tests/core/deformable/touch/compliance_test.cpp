@@ -72,9 +72,17 @@ TEST(ComplianceTest, ABodyOneCellThickRespondsAsTheElements) {
   for (const Vector3d& size : {Vector3d(0.06, 0.04, 0.006), Vector3d(0.04, 0.006, 0.06)}) {
     const auto mesh = std::make_shared<const HapticMesh>(felt_block(size, 10, FeltSides{}, "skin"));
     const Compliance body(mesh, soft_tissue());
-    EXPECT_EQ(body.touched(), body.places()) << "nothing lies below the surface";
-    EXPECT_LT(largest_error(body, soft_tissue(), static_cast<std::int32_t>(body.touched() / 2)),
-              1e-5);
+    const auto is_held = [&](std::size_t place) {
+      return mesh->held[static_cast<std::size_t>(body.vertex(static_cast<std::int32_t>(place)))];
+    };
+    for (std::size_t below = body.touched(); below < body.places(); ++below) {
+      EXPECT_TRUE(is_held(below)) << "nothing that moves lies below the surface";
+    }
+    std::size_t loaded = body.touched() / 2;
+    while (is_held(loaded)) {
+      ++loaded;
+    }
+    EXPECT_LT(largest_error(body, soft_tissue(), static_cast<std::int32_t>(loaded)), 1e-5);
   }
 }
 
