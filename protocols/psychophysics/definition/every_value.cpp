@@ -119,16 +119,25 @@ void check_fades(const TrialsDefinition& d, const Presented& presented) {
   }
 }
 
+/// The diagonal of an object's box [m]; 0: the field is no object, or its mesh is not known.
+double object_size(const scene::Field& field) {
+  if (const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind)) {
+    return solid->body ? solid->scale * solid->body->size : 0.0;
+  }
+  const auto* soft = std::get_if<scene::DeformableObjectParameters>(&field.kind);
+  return soft != nullptr && soft->mesh ? soft->mesh->box.diagonal().norm() : 0.0;
+}
+
 /// A mesh in millimetres that is taken for one in metres is as large as a house.
 void check_objects(const TrialsDefinition& d, const std::vector<scene::Field>& fields) {
   for (const scene::Field& field : fields) {
-    const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind);
-    const double size = solid != nullptr && solid->body ? solid->scale * solid->body->size : 0.0;
+    const double size = object_size(field);
     if (size > 0.0 && !(size >= kLeastObject && size <= kLargestObject)) {
+      const bool soft = std::holds_alternative<scene::DeformableObjectParameters>(field.kind);
       throw InputError(fmt::format(
-          "{}: objects.{} is {:.3g} m large; allowed: {:g} to {:g} [m]; scale = 0.001 takes a mesh "
-          "in millimetres",
-          d.file_name, field.name, size, kLeastObject, kLargestObject));
+          "{}: objects.{} is {:.3g} m large; allowed: {:g} to {:g} [m]; {} a mesh in millimetres",
+          d.file_name, field.name, size, kLeastObject, kLargestObject,
+          soft ? "`haptrial mesh repair --scale 0.001` converts" : "scale = 0.001 takes"));
     }
   }
 }

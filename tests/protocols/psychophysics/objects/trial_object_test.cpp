@@ -13,6 +13,7 @@
 #include "core/deformable/springs/constants_table.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/procedural.h"
+#include "protocols/psychophysics/definition/every_value.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
 #include "protocols/psychophysics/objects/outline.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
@@ -123,6 +124,25 @@ const std::string kLump = "[objects.tissue.inclusions.lump]\nradius = 0.004\nyou
 
 std::vector<std::string> problems_of_tissue(const std::string& text) {
   return problems_of_trials(small_trials(kSmallStaircase, kTissue + text));
+}
+
+TEST(TrialObjectTest, AMeshInMillimetresThatGivesWayIsNoticed) {
+  const test::TemporaryFolder folder;
+  geometry::write_mesh(folder / "mm.obj", geometry::make_box({50.0, 50.0, 50.0}));
+  for (const char* material :
+       {"young = 1e4\npoisson = 0.45\n",
+        "model = \"springs\"\nconstants = [1e-3, 0, 2e-3]\ndensity = 1000\n"}) {
+    TrialsDefinition definition;
+    read_small(small_trials(kSmallStaircase,
+                            "[objects.ball]\nkind = \"deformable\"\ncells = 4\nmesh = "
+                            "\"mm.obj\"\n" +
+                                std::string(material)),
+               definition);
+    load_objects(definition.objects, folder.path());
+    EXPECT_THAT(test::message_of([&] { check_every_value(definition); }),
+                AllOf(HasSubstr("objects.ball is 86.6 m large; allowed: 0.0005 to 2 [m]"),
+                      HasSubstr("mesh repair --scale 0.001")));
+  }
 }
 
 TEST(TrialObjectTest, ABodyThatGivesWayIsReadAndItsMistakesAreToldInASentenceEach) {
