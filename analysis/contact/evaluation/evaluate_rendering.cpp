@@ -41,6 +41,7 @@ void identify(const EvaluationOptions& o, Evaluation& result) {
   options.stick.least_force = o.prepare.least_force;
   options.velocity_noise = result.contact.velocity_noise;
   options.friction_by_lag = result.contact.friction_by_lag;
+  options.lag_like_friction = result.contact.lag_like_friction;
   options.texture = o.texture;
   try {
     result.identified = identify_contact(result.contact.samples, options);

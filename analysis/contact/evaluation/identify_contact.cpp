@@ -159,8 +159,8 @@ void find_dynamic_friction(const ContactSamples& s, const std::vector<std::size_
   const BlockFit fit = fit_blocks(x, y, {kFrictionName, "force x", "force y", "force z"},
                                   {blocks_for(slipping.size(), o), o.level});
   found.dynamic_friction = fit.intervals[0];
-  if (o.friction_by_lag > 0.0) {
-    widen(o.friction_by_lag, *found.dynamic_friction);
+  widen(o.friction_by_lag, *found.dynamic_friction);
+  if (o.lag_like_friction) {
     found.confounded.push_back(fmt::format(
         "Dynamic friction looks like a lag on this path: {}.",
         std::isfinite(o.friction_by_lag)

@@ -17,8 +17,9 @@ struct TextureGrid {
 
 struct IdentificationOptions {
   StickOptions stick{};
-  double velocity_noise{0.0};   // of a component; raises `stick.fast` to five times of it [m/s]
-  double friction_by_lag{0.0};  // half of an interval: friction that a lag looks like, 0 or more
+  double velocity_noise{0.0};     // of a component; raises `stick.fast` to five times of it [m/s]
+  double friction_by_lag{0.0};    // half of an interval: friction that a lag leaves open, 0 or more
+  bool lag_like_friction{false};  // a sentence says so
   std::optional<TextureGrid> texture{};
   int blocks{20};      // >= 8; fewer where they would hold less than ten samples
   double level{0.95};  // of all intervals

@@ -263,6 +263,7 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
   double noise = 0.0;
   way.velocity = samples_at_poses(path, touch, Eigen::Isometry3d::Identity(), noise).velocity;
   double as_friction = 0.0;
+  bool like_friction = false;
   for (int round = 0; round < kLagRounds; ++round) {
     LagFit fit = estimate_surface_lag(way, forces, o.least_force);
     const double change = fit.lag;
@@ -272,6 +273,7 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
     const bool better =
         !result.lag->doubt.empty() || fit.high - fit.low < result.lag->high - result.lag->low;
     as_friction = std::abs(fit.as_friction);
+    like_friction = fit.like_friction;
     if (!fit.doubt.empty() || (round == 0 && !better)) {
       break;
     }
@@ -281,10 +283,11 @@ ForceStream refined_forces(const ContactRecording& recording, const PoseStream& 
       break;
     }
   }
-  if (as_friction > 0.0) {
-    const double width = result.lag->high - result.lag->low;
-    result.friction_by_lag = result.lag->doubt.empty() ? 0.5 * as_friction * width
-                                                       : std::numeric_limits<double>::infinity();
+  result.lag_like_friction = like_friction;
+  if (result.lag->doubt.empty()) {
+    result.friction_by_lag = 0.5 * as_friction * (result.lag->high - result.lag->low);
+  } else if (like_friction) {
+    result.friction_by_lag = std::numeric_limits<double>::infinity();
   }
   return forces;
 }

@@ -37,6 +37,7 @@ struct PreparedContact {
   std::optional<LagFit> lag;    // estimated
   double lag_used{0.0};         // [s]
   double friction_by_lag{0.0};  // half of an interval: friction that the lag leaves open
+  bool lag_like_friction{false};
   std::optional<LoadFit> load;  // estimated
   std::optional<Registration> registration;
   double least_force{0.0};              // of a contact [N]

@@ -92,9 +92,12 @@ DirectionSums sum_of(const LagBlocks& blocks, std::size_t without) {
   return all;
 }
 
-/// The friction that does what a second of lag does, if another friction mends most of what another
-/// lag spoils; else 0 [1/s].
-double lag_as_friction(const std::vector<LagBlocks>& lags, double at, double step) {
+/// How the friction that fits best changes with the lag.
+struct FrictionByLag {
+  double change;  // [1/s]
+  bool alike;     // another friction mends most of what another lag spoils
+};
+FrictionByLag friction_by_lag(const std::vector<LagBlocks>& lags, double at, double step) {
   const auto i = static_cast<std::size_t>(
       std::clamp(std::round(at), 1.0, static_cast<double>(lags.size()) - 2.0));
   const std::size_t reach = std::min({kReach, i, lags.size() - 1 - i});
@@ -104,13 +107,12 @@ double lag_as_friction(const std::vector<LagBlocks>& lags, double at, double ste
   const double anew = before.left() + after.left() - 2.0 * here.left();
   const double kept =
       before.left_by(here.shares()) + after.left_by(here.shares()) - 2.0 * here.left();
-  if (!(kept > 0.0) || anew > (1.0 - kAlike * kAlike) * kept) {
-    return 0.0;
-  }
   const auto friction = [](const DirectionSums& sums) {
-    return -sums.shares()[1] / sums.shares()[0];
+    const Eigen::Vector2d shares = sums.shares();
+    return shares[0] > 0.0 ? -shares[1] / shares[0] : 0.0;  // 0: nothing presses
   };
-  return (friction(after) - friction(before)) / (2.0 * static_cast<double>(reach) * step);
+  return {(friction(after) - friction(before)) / (2.0 * static_cast<double>(reach) * step),
+          kept > 0.0 && anew <= (1.0 - kAlike * kAlike) * kept};
 }
 
 /// The lag that leaves least without a block, between the tried ones by a parabola.
@@ -195,10 +197,15 @@ LagFit estimate_surface_lag(const SurfaceWay& way, const ForceStream& force, dou
   const double noise =
       analysis::t_quantile(0.975, blocks - 1.0) * std::sqrt((blocks - 1.0) / blocks * m.squares);
   const double half = std::hypot(noise, 0.5 * options.step);  // no finer than the lags tried
-  const double as_friction = lag_as_friction(sums, (best.lag - first) / options.step, options.step);
-  return {
-      best.lag,   best.lag - half, best.lag + half, 1.0 - best.left, doubt_of(best, half, options),
-      as_friction};
+  const FrictionByLag friction =
+      friction_by_lag(sums, (best.lag - first) / options.step, options.step);
+  return {best.lag,
+          best.lag - half,
+          best.lag + half,
+          1.0 - best.left,
+          doubt_of(best, half, options),
+          friction.change,
+          friction.alike};
 }
 
 }  // namespace haptrial::evaluation

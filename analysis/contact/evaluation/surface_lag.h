@@ -22,9 +22,10 @@ struct SurfaceWay {
 /// and it needs no change of position along the force, which estimate_lag() does.
 ///
 /// Doubted where it leaves more than 0.9 of what the median lag leaves, where the best lag is the
-/// largest that was tried, or where the interval is wider than `largest`. Lag and friction look
-/// alike, `as_friction`, where their effects correlate beyond 0.95: as when a probe goes round an
-/// axis with an even speed, which turns the normal into its direction of movement.
+/// largest that was tried, or where the interval is wider than `largest`. A lag changes the
+/// friction that fits best, by `as_friction`, since a probe that moves on over a body turns the
+/// normal into its direction of movement. The two look alike where their effects correlate beyond
+/// 0.95: as when it goes round an axis with an even speed.
 /// @param force  in W; samples are used whose size is above `least_force` > 0 [N]
 /// @param options  `slowest` is not used
 /// @throws std::invalid_argument for a bad stream or option, lengths that differ or fewer than 100

@@ -18,7 +18,8 @@ struct LagFit {
   double high{0.0};
   double explained{0.0};    // share of the force's quick changes that the pose explains at the lag
   std::string doubt;        // a sentence; empty: none
-  double as_friction{0.0};  // friction that a second of lag looks like [1/s]; 0: unlike
+  double as_friction{0.0};  // change of the friction that fits best with the lag [1/s]
+  bool like_friction{false};  // another friction mends most of what another lag spoils
 };
 
 /// The lag between two streams of one contact, from what both know. Quick changes of the force (in

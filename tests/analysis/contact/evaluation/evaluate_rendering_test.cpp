@@ -123,6 +123,49 @@ TEST(EvaluateRenderingTest, ALagThatLooksLikeFrictionWidensItsInterval) {
   EXPECT_EQ(frictions_held, kSeeds);
 }
 
+/// A probe that rubs a sphere to and fro, whose force clock is 30 ms late.
+ContactRecording rubbed_late(std::uint64_t seed) {
+  RandomStream random(seed, "places");
+  const auto normal = [](double t) {
+    return Vector3d(0.7 * std::sin(2.1 * t), 1.0, 0.6 * std::sin(3.1 * t + 1.0)).normalized();
+  };
+  ContactRecording recording;
+  for (int i = 0; i < 6000; ++i) {
+    const double t = i / 500.0;
+    const Vector3d n = normal(t);
+    const Vector3d way = (normal(t + 1e-4) - normal(t - 1e-4)).normalized();
+    if (i % 5 == 0) {
+      const Vector3d noise(random.normal(), random.normal(), random.normal());
+      recording.pose.time.push_back(t);
+      recording.pose.position.push_back(kRadius * n + 1e-4 * noise);
+      recording.pose.orientation.push_back(Eigen::Quaterniond::Identity());
+    }
+    recording.force.time.push_back(t + 0.03);
+    recording.force.force.push_back((1.5 + 0.5 * std::sin(5.0 * t)) * (n - 0.25 * way));
+  }
+  return recording;
+}
+
+TEST(EvaluateRenderingTest, TheIntervalOfFrictionHasWhatTheLagLeavesOpen) {
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kPenalty};
+  options.prepare.lag.reset();
+  constexpr int kSeeds = 8;
+  int held = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Evaluation e = evaluate_rendering(rubbed_late(seed), sphere(), options);
+    const LagFit& lag = *e.contact.lag;
+    const Interval& friction = *e.identified->dynamic_friction;
+    EXPECT_EQ(lag.doubt, "");
+    held += friction.holds(0.25) ? 1 : 0;
+    // The normal turns by 1.3 rad/s in the mean.
+    EXPECT_GT(friction.high - friction.low, 1.1 * (lag.high - lag.low));
+    EXPECT_LT(friction.high - friction.low, 1.7 * (lag.high - lag.low));
+    EXPECT_THAT(e.identified->confounded, testing::Not(testing::Contains(HasSubstr("a lag"))));
+  }
+  EXPECT_GE(held, kSeeds - 1) << "by the noise alone none of them does";
+}
+
 TEST(EvaluateRenderingTest, OnACircleLagAndFrictionAreNotToldApart) {
   EvaluationOptions options = known_frame();
   options.renderers = {RendererKind::kProxy};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "analysis/contact/demo_study/simulated_probe.h"
 #include "analysis/contact/evaluation/contact_samples.h"
@@ -61,6 +62,39 @@ TEST(SurfaceLagTest, IsFoundWithAndWithoutFriction) {
     EXPECT_LT(worst, 0.004);
     EXPECT_GE(held, 11) << "fewer than 11 of 15 intervals of 95 % hold once in 1,600 times";
   }
+}
+
+/// To and fro on a great circle at an angular speed w the force that is felt a little later leans
+/// forwards: f·u / f·n = (w d - mu) / (1 + mu w d) after d, a change of friction of -w (1 + mu²).
+TEST(SurfaceLagTest, TheChangeOfFrictionIsTheTurnOfTheNormal) {
+  constexpr double kTurn = 2.0, kMu = 0.3, kHalfPeriod = 0.9371, kLate = 0.03;
+  const auto at = [](double t) {
+    const double in = std::fmod(t + 8.0 * kHalfPeriod, 2.0 * kHalfPeriod);
+    const bool back = in >= kHalfPeriod;
+    const double angle = kTurn * (back ? 2.0 * kHalfPeriod - in : in);
+    const double forwards = back ? -1.0 : 1.0;
+    return std::pair(Vector3d(std::sin(angle), std::cos(angle), 0.0),
+                     Vector3d(forwards * std::cos(angle), -forwards * std::sin(angle), 0.0));
+  };
+  SurfaceWay way;
+  for (int i = 0; i < 600; ++i) {
+    const auto [normal, direction] = at(i / 60.0);
+    way.time.push_back(i / 60.0);
+    way.normal.push_back(normal);
+    way.velocity.emplace_back(0.1 * direction);
+  }
+  way.touching.assign(way.time.size(), true);
+  ForceStream force;
+  for (int i = -250; i < 5250; ++i) {
+    const auto [normal, direction] = at(i / 500.0);
+    force.time.push_back(i / 500.0 + kLate);
+    force.force.emplace_back(normal - kMu * direction);
+  }
+  const LagFit fit = estimate_surface_lag(way, force, 0.2);
+  EXPECT_EQ(fit.doubt, "");
+  EXPECT_NEAR(fit.lag, kLate, 0.003);
+  EXPECT_FALSE(fit.like_friction) << "the turns tell them apart";
+  EXPECT_NEAR(fit.as_friction, -kTurn * (1.0 + kMu * kMu), 0.12) << "less at the turns";
 }
 
 TEST(SurfaceLagTest, UnrelatedForcesAreDoubted) {
