@@ -402,6 +402,7 @@ TEST_F(EvaluateCommandTest, BadInputGetsASentence) {
   refused("rubbed --mesh body.obj --units mm", "the contacts span 0.0");
   run("haptrial mesh repair body.obj large.obj --scale 1000");
   refused("rubbed --mesh large.obj", "--units must be the unit of the mesh: m, cm or mm");
+  refused("rubbed --mesh large.obj --registered --lag 0", "the contacts span 0.0");
   turn_faces("body.obj", "inwards.obj");
   refused("rubbed --mesh inwards.obj --registered", "inwards.obj: its faces look inwards");
   refused(good + "--lag 0 --on-body", "do the forces act on the body (--on-body)");

@@ -26,7 +26,7 @@ constexpr int kLagRounds = 6;
 constexpr double kSameLag = 2e-4;      // [s]
 constexpr double kMuchFriction = 0.6;  // rare between dry solids
 constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
-constexpr double kOffBody = 0.05;      // of the path's size: a median distance that is doubted
+constexpr double kOffBody = 0.05;      // of a size: a median distance that is doubted
 
 void require_prepared(bool good, const char* sentence) {
   if (!good) {
@@ -165,7 +165,7 @@ Eigen::Isometry3d body_from_world(const PoseStream& path, const ForceStream& at_
 
 /// Contact of samples with the body.
 struct Touch {
-  std::vector<Vector3d> out, normal, force;
+  std::vector<Vector3d> at, out, normal, force;  // the probe, its contact
   std::vector<double> depth;
   std::vector<bool> touching;
   double inwards{0.0};  // share of the forces above the least one that point into the body
@@ -176,24 +176,23 @@ Touch touch_body(const PoseStream& path, const ForceStream& force, const Eigen::
                  const PrepareOptions& o) {
   Touch t;
   std::vector<contact::SurfacePoint> nearest;
-  std::vector<Vector3d> points;
   std::int32_t hint = -1;
   for (const Vector3d& p : path.position) {
-    points.emplace_back(T_BW * p);
-    nearest.push_back(body.distance(points.back(), hint));
+    t.at.emplace_back(T_BW * p);
+    nearest.push_back(body.distance(t.at.back(), hint));
     hint = nearest.back().triangle;
     t.depth.push_back(o.radius - nearest.back().distance);
   }
-  t.normal = path_normals(body.surface, shading, points, o.smoothing);
+  t.normal = path_normals(body.surface, shading, t.at, o.smoothing);
   double strong = 0.0, pulled = 0.0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = 0; i < t.at.size(); ++i) {
     t.force.emplace_back(T_BW.linear() * force.force[i]);
     const double pressed = t.force.back().dot(t.normal[i]);
     t.touching.push_back(pressed > o.least_force);
     strong += t.force.back().norm() > o.least_force ? 1.0 : 0.0;
     pulled += pressed < -0.5 * t.force.back().norm() && -pressed > o.least_force ? 1.0 : 0.0;
     const bool moved = o.onto_surface && (t.touching.back() || t.depth[i] > 0.0);
-    t.out.push_back(moved ? nearest[i].point : Vector3d(points[i] - o.radius * t.normal[i]));
+    t.out.push_back(moved ? nearest[i].point : Vector3d(t.at[i] - o.radius * t.normal[i]));
   }
   t.inwards = strong > 0.0 ? pulled / strong : 0.0;
   return t;
@@ -338,16 +337,21 @@ void remark_on_lean(const Touch& touch, PreparedContact& result) {
 }
 
 /// Poses that were given in the body's frame, which no registration brought to the body.
-void judge_places(const Touch& touch, PreparedContact& result) {
+/// @throws std::invalid_argument if they are far off and cannot belong to a body of that size
+void judge_places(const Touch& touch, const contact::FeltBody& body, PreparedContact& result) {
   std::vector<Vector3d> contacts;
   std::vector<double> distance;
   for (std::size_t i = 0; i < touch.out.size(); ++i) {
     if (touch.touching[i]) {
-      contacts.push_back(touch.out[i]);
+      contacts.push_back(touch.at[i]);
       distance.push_back(std::abs(touch.depth[i]));
     }
   }
-  remark_on_distance(*analysis::quantile(distance, 0.5), contacts, result);
+  const double median = *analysis::quantile(distance, 0.5);
+  if (median > kOffBody * body.size) {  // a press at one place of the body is small, but on it
+    check_size(body, contacts);
+  }
+  remark_on_distance(median, contacts, result);
 }
 
 /// @throws std::invalid_argument if forces lead through the whole body
@@ -415,7 +419,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const contact
   judge_touch(touch, result);
   judge_depth(touch, body, result);
   if (options.registered) {
-    judge_places(touch, result);
+    judge_places(touch, body, result);
   }
   result.touching = std::move(touch.touching);
   result.out = std::move(touch.out);
