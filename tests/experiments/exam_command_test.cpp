@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -17,6 +18,7 @@
 
 #include "analysis/files/csv.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/live_command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -266,6 +268,31 @@ done
   const auto both = run("make more --soft --rigid");
   EXPECT_EQ(both.status, 2);
   EXPECT_THAT(both.errors, HasSubstr("--rigid excludes --soft"));
+}
+
+/// A program that has stopped to answer ends with the command.
+TEST_F(ExamCommandTest, AProgramEndsWithTheCommand) {
+  ASSERT_EQ(run("make exam").status, 0);
+  std::ofstream(folder_ / "silent.sh") << R"(echo $$ > process.txt
+while read -r word rest; do
+  case $word in tick) echo > waits; exec sleep 1000;; *) echo ready;; esac
+done
+)";
+  for (const int signal : {SIGTERM, SIGINT}) {
+    std::filesystem::remove(folder_ / "waits");
+    test::LiveCommand command("exam run exam --out a --program sh silent.sh",
+                              "cd '" + folder_.path().string() + "'");
+    ASSERT_TRUE(command.reaches([&] { return std::filesystem::exists(folder_ / "waits"); }));
+    command.signal(signal);
+    const auto ended = command.wait();
+    EXPECT_EQ(ended.status, 1);
+    EXPECT_THAT(ended.errors, HasSubstr("cancelled"));
+    pid_t process = 0;
+    std::ifstream(folder_ / "process.txt") >> process;
+    ASSERT_GT(process, 0);
+    EXPECT_EQ(::kill(process, 0), -1) << "it runs on";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a"));
+  }
 }
 
 /// Words of the other program may look like options, known or not.

@@ -8,30 +8,19 @@
 #include <cmath>
 #include <sstream>
 #include <system_error>
+#include <utility>
 
 #include "analysis/contact/exam/soft_body.h"
 #include "core/base/error.h"
+#include "core/geometry/mesh/work.h"
 
 namespace haptrial::evaluation {
 namespace {
 
 constexpr int kLongest = 60'000;         // an answer may take [ms]
+constexpr int kPause = 100;              // between questions whether to go on [ms]
 constexpr std::size_t kLongLine = 400;   // [bytes]
 constexpr std::size_t kLongNumber = 40;  // with what stands between numbers [bytes]
-
-/// @returns whether something was read before the time was over.
-bool read_more(int from, std::string& text) {
-  pollfd waited{from, POLLIN, 0};
-  if (::poll(&waited, 1, kLongest) <= 0) {
-    return false;
-  }
-  std::array<char, 4096> bytes;
-  const ssize_t count = ::read(from, bytes.data(), bytes.size());
-  if (count > 0) {
-    text.append(bytes.data(), static_cast<std::size_t>(count));
-  }
-  return count > 0;
-}
 
 std::string beginning_of(const std::string& answer) {
   return answer.size() < kLongLine ? answer : answer.substr(0, kLongLine) + "...";
@@ -39,8 +28,8 @@ std::string beginning_of(const std::string& answer) {
 
 }  // namespace
 
-ProgramRenderer::ProgramRenderer(const std::vector<std::string>& words)
-    : name_(words.empty() ? "" : words.front()) {
+ProgramRenderer::ProgramRenderer(const std::vector<std::string>& words, std::function<bool()> go_on)
+    : name_(words.empty() ? "" : words.front()), go_on_(std::move(go_on)) {
   try {
     program_ = std::make_unique<ChildProcess>(
         Program{.words = words, .input = to_.from.get(), .output = from_.to.get()});
@@ -125,12 +114,37 @@ std::vector<double> ProgramRenderer::ask_numbers(const std::string& line, std::s
   return numbers;
 }
 
+void ProgramRenderer::check_cancelled() const {
+  if (go_on_ && !go_on_()) {
+    throw geometry::Cancelled();
+  }
+}
+
+/// @returns whether something was read before the time was over.
+bool ProgramRenderer::read_more() {
+  pollfd waited{from_.from.get(), POLLIN, 0};
+  int ready = 0;
+  for (int passed = 0; ready <= 0 && passed < kLongest; passed += kPause) {
+    ready = ::poll(&waited, 1, kPause);
+    check_cancelled();
+  }
+  if (ready <= 0) {
+    return false;
+  }
+  std::array<char, 4096> bytes;
+  const ssize_t count = ::read(waited.fd, bytes.data(), bytes.size());
+  if (count > 0) {
+    rest_.append(bytes.data(), static_cast<std::size_t>(count));
+  }
+  return count > 0;
+}
+
 std::string ProgramRenderer::ask(const std::string& line, std::size_t longest) {
   const std::string sent = line + "\n";
   bool there = write_fully(to_.to.get(), sent.data(), sent.size());
   std::size_t end = rest_.find('\n');
   while (there && end == std::string::npos && rest_.size() < longest) {
-    there = read_more(from_.from.get(), rest_);
+    there = read_more();
     end = rest_.find('\n');
   }
   if (end == std::string::npos) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -39,8 +40,11 @@ namespace haptrial::evaluation {
 /// Waits for the program: not for a servo thread. Source: Morris 2006, §7.5.
 class ProgramRenderer final : public Candidate {
  public:
-  /// @param words  the program and its arguments @throws InputError where it cannot be started.
-  explicit ProgramRenderer(const std::vector<std::string>& words);
+  /// @param words  the program and its arguments
+  /// @param go_on  asked at every line and ten times a second while one is waited for; on false all
+  /// functions throw geometry::Cancelled. Empty: never asked
+  /// @throws InputError where it cannot be started.
+  explicit ProgramRenderer(const std::vector<std::string>& words, std::function<bool()> go_on = {});
 
   /// Begins a task. @throws InputError for an answer other than "ready", or none within a minute.
   void begin(const ContactTask& task) override;
@@ -56,10 +60,13 @@ class ProgramRenderer final : public Candidate {
  private:
   std::string words_of(const Eigen::Isometry3d& tool) const;
   std::string ask(const std::string& line, std::size_t longest);
+  bool read_more();
+  void check_cancelled() const;
   void expect_ready(const std::string& line);
   std::vector<double> ask_numbers(const std::string& line, std::size_t count);
 
   std::string name_;
+  std::function<bool()> go_on_;
   ExamKind kind_{ExamKind::kPoint};
   double load_{0.0};         // of a soft body
   std::size_t vertices_{0};  // likewise

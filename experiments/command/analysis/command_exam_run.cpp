@@ -13,6 +13,8 @@
 #include "core/base/error.h"
 #include "experiments/command/program_words.h"
 #include "experiments/command/subcommand.h"
+#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -33,7 +35,8 @@ std::unique_ptr<evaluation::Candidate> candidate_of(const ExamRunOptions& option
   if (options.program.empty()) {
     return evaluation::own_candidate(options.renderer, exam);
   }
-  return std::make_unique<evaluation::ProgramRenderer>(options.program);
+  return std::make_unique<evaluation::ProgramRenderer>(options.program,
+                                                       [] { return !interrupted(); });
 }
 
 std::string name_of(const ExamRunOptions& options) {
@@ -46,6 +49,10 @@ std::string name_of(const ExamRunOptions& options) {
 int run_exam(const ExamRunOptions& options) {
   const auto exam = evaluation::read_exam(options.folder);
   const evaluation::ExamKind kind = exam.front().task.kind();
+  std::optional<InterruptWatch> watch;
+  if (!options.program.empty()) {
+    watch.emplace();  // a program has a process group of its own, which no signal reaches
+  }
   const auto candidate = candidate_of(options, kind);
   const std::string name = name_of(options);
   evaluation::ExamAnswers answers = evaluation::sit_exam(*candidate, name, exam);
