@@ -368,6 +368,13 @@ TEST_F(EvaluateCommandTest, WhatIsDoubtfulIsSaid) {
       run("haptrial evaluate rubbed --mesh body.obj --registered --lag 0 --load 0 0 0 0 0 0");
   EXPECT_EQ(known.status, 0) << known.errors;
   EXPECT_THAT(known.output, Not(HasSubstr("No stretch without contact was named")));
+  const std::string line =
+      "haptrial evaluate rubbed --mesh body.obj --registered --lag 0 "
+      "--renderer proxy --friction 0.2 --load ";
+  EXPECT_EQ(run(line + "0 -.01 0 -.02 0 0 --out short").status, 0);
+  EXPECT_EQ(run(line + "0 -0.01 0 -0.02 0 0 --out whole").status, 0);
+  EXPECT_EQ(numbers("short")["renderings"][0]["force_error"],
+            numbers("whole")["renderings"][0]["force_error"]);
 }
 
 TEST_F(EvaluateCommandTest, BadInputGetsASentence) {

@@ -31,10 +31,18 @@ void complain(const std::string& sentence) {
   [[maybe_unused]] const int written = std::fputs(("haptrial: " + sentence + "\n").c_str(), stderr);
 }
 
+/// Writes -.5 as -0.5, which CLI11 would take for an option.
+void add_leading_zero(std::string& word) {
+  if (word.size() > 2 && word.starts_with("-.") && word[2] >= '0' && word[2] <= '9') {
+    word.insert(1, "0");
+  }
+}
+
 /// The words of a line, those of another program as one.
 std::vector<std::string> joined_words(std::span<char* const> line) {
   std::vector<std::string> words(line.begin(), line.end());
   const auto option = std::ranges::find(words, kProgramOption);
+  std::for_each(words.begin(), option, add_leading_zero);
   if (words.end() - option > 2) {
     for (auto word = option + 2; word != words.end(); ++word) {
       *(option + 1) += kProgramSeparator + *word;
