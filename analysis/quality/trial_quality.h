@@ -35,9 +35,10 @@ struct TrialQuality {
 /// Limits from which on a trial is flagged. A flag is a remark: it excludes nothing by itself.
 namespace flag {
 /// Target forces up to the limit bring virtual participants of the shipped studies to it for up to
-/// 14 % of a run. Beyond that the recorded force is the device's and not the participant's.
+/// 14 % of a run, one in 3,456 for longer. Beyond that the recorded force is the device's and not
+/// the participant's.
 inline constexpr double kSaturation = 0.15;
-/// The shipped studies have at most 1.4 %: the first swings after a target force at the limit.
+/// The shipped studies have at most 0.7 %: the first swings after a target force at the limit.
 inline constexpr double kOscillation = 0.05;
 /// 0.15 s are three times what guidance needs in the shipped study, 0.05 s: the hand then followed
 /// something else, and every force comes late by as much.
