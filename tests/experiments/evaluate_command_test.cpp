@@ -286,6 +286,8 @@ TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
   const auto error = [&](const char* folder, int i) {
     return numbers(folder)["cross_fit"]["root_mean_square_N"][i][i].get<double>();
   };
+  EXPECT_EQ(numbers("on_session")["cross_fit"]["recordings"],
+            (nlohmann::json{"late", "S01.h5, ball in trial 1 (simulated)"}));
   EXPECT_NEAR(error("on_table", 1), alone, 1e-9);
   EXPECT_NEAR(error("on_session", 0), alone, 1e-9);
   EXPECT_NEAR(error("on_session", 1), error("on_table", 0), 1e-9);

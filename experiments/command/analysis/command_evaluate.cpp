@@ -242,6 +242,9 @@ std::vector<evaluation::NamedRecording> read_others(const EvaluateOptions& o,
       other.object.reset();
     }
     GivenRecording given = read_given(other, prepare);
+    if (given.names.simulated && !o.simulated) {
+      given.names.recording += " (simulated)";
+    }
     others.push_back({given.names.recording, std::move(given.recording), given.prepare});
   }
   return others;

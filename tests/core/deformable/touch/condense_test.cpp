@@ -7,14 +7,14 @@
 
 #include "core/base/random.h"
 
-namespace haptrial::deformable {
+namespace haptrial::deformable::condense_test {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 
-MatrixXd dense(const BlockMatrix& matrix) {
+MatrixXd dense_stiffness(const BlockMatrix& matrix) {
   const auto size = 3 * static_cast<Index>(matrix.rows());
   MatrixXd all(size, size);
   for (Index column = 0; column < size; ++column) {
@@ -63,7 +63,7 @@ TEST(CondenseTest, NothingLiesBetweenTwoLobes) {
   const std::vector<std::uint8_t> held(kVertices, 0);
   const MatrixXd found = condensed(stiffness, at, held, kept);
 
-  const MatrixXd all = dense(stiffness);
+  const MatrixXd all = dense_stiffness(stiffness);
   constexpr Index kOuter = 3 * kKept, kInner = 6 * kLobe;
   const MatrixXd across = all.bottomLeftCorner(kInner, kOuter);
   const MatrixXd exact =
@@ -75,4 +75,4 @@ TEST(CondenseTest, NothingLiesBetweenTwoLobes) {
 }
 
 }  // namespace
-}  // namespace haptrial::deformable
+}  // namespace haptrial::deformable::condense_test
