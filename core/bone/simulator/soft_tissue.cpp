@@ -127,7 +127,7 @@ void check_soft_tissue(const BoneModel& model, std::span<const SoftTissueParamet
 
 SurfaceDepth::SurfaceDepth(const BoneModel& model, std::uint8_t label, double reach)
     : spacing_(model.grid.spacing) {
-  const double known = std::min(reach + 2.0 * spacing_, kMostReach * spacing_);
+  const double known = std::min(reach + 3.0 * spacing_, kMostReach * spacing_);
   const double deep = std::min(kDeepest, kMostReach * spacing_);
   const BoneModel marked = marked_part(model, label, known);
   const DistanceField outside(marked, {false, true, false}, known);
@@ -153,32 +153,42 @@ SurfaceDepth::SurfaceDepth(const BoneModel& model, std::uint8_t label, double re
 
 bool SurfaceDepth::at(const Vector3d& p_B, LocalTissue& here) const noexcept {
   const Eigen::Array3d place = (p_B - low_).array() / spacing_;
-  const Eigen::Array3d cell = place.floor();
+  const Eigen::Array3d middle = place.round();  // the nearest voxel
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(cell[axis] >= 0.0 && cell[axis] + 1.0 < size_[static_cast<std::size_t>(axis)])) {
+    if (!(middle[axis] >= 1.0 && middle[axis] + 1.0 < size_[static_cast<std::size_t>(axis)])) {
       return false;
     }
   }
-  const Eigen::Array3d t = place - cell;
-  const auto first = static_cast<std::size_t>(
-      cell[0] + size_[0] * (cell[1] + static_cast<double>(size_[1]) * cell[2]));
-  const std::size_t dy = static_cast<std::size_t>(size_[0]);
+  // Weights and their slopes have a row for each axis and a column for each of its three voxels.
+  const Eigen::Array3d t = place - middle;
+  Eigen::Array33d weight, slope;
+  weight.col(0) = 0.5 * (0.5 - t).square();
+  weight.col(1) = 0.75 - t.square();
+  weight.col(2) = 0.5 * (0.5 + t).square();
+  slope.col(0) = t - 0.5;
+  slope.col(1) = -2.0 * t;
+  slope.col(2) = t + 0.5;
+  const auto dy = static_cast<std::size_t>(size_[0]);
   const std::size_t dz = dy * static_cast<std::size_t>(size_[1]);
+  const Eigen::Array3d low = middle - 1.0;
+  const std::size_t first = static_cast<std::size_t>(low[0]) +
+                            dy * static_cast<std::size_t>(low[1]) +
+                            dz * static_cast<std::size_t>(low[2]);
   here.distance = 0.0;
   here.gradient.setZero();
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::array<std::size_t, 3> bit{corner & 1, corner >> 1 & 1, corner >> 2 & 1};
-    const double value = static_cast<double>(distance_[first + bit[0] + bit[1] * dy + bit[2] * dz]);
-    Eigen::Array3d weight, slope;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto a = static_cast<Eigen::Index>(axis);
-      weight[a] = bit[axis] != 0 ? t[a] : 1.0 - t[a];
-      slope[a] = bit[axis] != 0 ? 1.0 : -1.0;
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      const float* row =
+          &distance_[first + static_cast<std::size_t>(j) * dy + static_cast<std::size_t>(k) * dz];
+      for (int i = 0; i < 3; ++i) {
+        const double value = static_cast<double>(row[i]);
+        here.distance += value * weight(0, i) * weight(1, j) * weight(2, k);
+        here.gradient += value / spacing_ *
+                         Vector3d(slope(0, i) * weight(1, j) * weight(2, k),
+                                  weight(0, i) * slope(1, j) * weight(2, k),
+                                  weight(0, i) * weight(1, j) * slope(2, k));
+      }
     }
-    here.distance += value * weight[0] * weight[1] * weight[2];
-    here.gradient += value / spacing_ *
-                     Vector3d(slope[0] * weight[1] * weight[2], weight[0] * slope[1] * weight[2],
-                              weight[0] * weight[1] * slope[2]);
   }
   return true;
 }

@@ -46,7 +46,8 @@ struct Tear {
 };
 
 /// Signed distance from a labelled structure's surface, positive outside, smoothed over a voxel and
-/// interpolated. B is the bone's frame.
+/// interpolated by quadratic B-splines, so that its gradient, and a force along it, has no steps
+/// between voxels nor midway between two sides of the structure. B is the bone's frame.
 class SurfaceDepth {
  public:
   /// @param reach  how far outside it is known [m]

@@ -142,6 +142,43 @@ TEST(ForbiddenRegionTest, TheForceGrowsWithoutAStepAndUpToItsLimit) {
   EXPECT_LE(most, 1.2 * 1.001);  // the smoothed distance's slope is 1 at most
 }
 
+/// Bone with two walls of dura, whose surfaces are at x = ±3.25 mm.
+BoneModel bone_with_groove() {
+  BoneModel model = bone_with_nerve();
+  model.structures[2].name = "sigmoid sinus and dura";
+  for (std::size_t at = 0; at < model.labels.size(); ++at) {
+    const double x = model.grid.origin.x() + kVoxel * static_cast<double>(at % 61);
+    model.labels[at] = std::abs(x) > 3.25e-3 ? 2 : 1;
+  }
+  return model;
+}
+
+// Each wall alone pushes by k (r + m - its distance). In the middle the nearer one changes.
+TEST(ForbiddenRegionTest, BetweenTwoSidesTheForceTurnsWithoutAStep) {
+  RegionSetup setup = setup_of(RegionKind::kHard);
+  setup.structures = {"dura"};
+  ForbiddenRegion region(setup, std::make_shared<const RegionMap>(setup, bone_with_groove(), 2e-3));
+  const BurrShape::Ball small[] = {{0.0, 0.5e-3}};
+  region.tick(small, Vector3d(0.0, 0.0, 0.0), kAxis);  // 0.75 mm off the margins: felt from now on
+  constexpr double kStep = 1e-6;
+  Vector3d before = region.tick(kBurr, Vector3d(-2.5e-3, 1e-4, 2e-4), kAxis);
+  for (int i = 1; i <= 5000; ++i) {
+    const double x = -2.5e-3 + i * kStep;
+    const Vector3d force = region.tick(kBurr, Vector3d(x, 1e-4, 2e-4), kAxis);
+    const double depth = 2e-3 + setup.margin - (3.25e-3 - std::abs(x));
+    const double push = std::min(setup.spring() * depth, setup.most_force());
+    // The slope of the distance turns by 2 within a voxel at most.
+    ASSERT_LT((force - before).norm(), (2.0 * setup.most_force() / kVoxel + setup.spring()) * kStep)
+        << x;
+    EXPECT_LE(force.norm(), push + setup.spring() * kVoxel);
+    if (std::abs(x) > 1.3e-3) {  // the smoothing reaches 2.5 voxels
+      EXPECT_NEAR(force.x(), x > 0.0 ? -push : push, 1e-3) << x;
+    }
+    before = force;
+  }
+  EXPECT_NEAR(region.tick(kBurr, Vector3d(0.0, 1e-4, 2e-4), kAxis).norm(), 0.0, 1e-3);
+}
+
 TEST(ForbiddenRegionTest, ABurrThatIsInsideWhenItIsTakenIsNotThrownOut) {
   ForbiddenRegion region = region_of(setup_of(RegionKind::kHard));
   const Vector3d inside(5.5e-3, 0, 0);

@@ -200,6 +200,31 @@ TEST(SoftTissueTest, AClosedPathGivesNoEnergy) {
   EXPECT_LT(std::abs(work), 2e-4 * moved);
 }
 
+/// A second difference of a distance along an axis is at most two voxels, so that the gradient
+/// turns by at most 2 / voxel along each of three axes.
+TEST(SoftTissueTest, TheGradientOfASurfaceHasNoSteps) {
+  BoneModel model = layer();
+  RandomStream random(7, "bumps");
+  for (std::size_t at = 0; at < model.labels.size(); ++at) {
+    const std::size_t k = at / (61 * 61);
+    model.labels[at] = k >= 10 && k < 14 && random.uniform() < 0.2 ? 2 : model.labels[at];
+  }
+  const SurfaceDepth depth(model, 2, kRadius);
+  constexpr double kStep = 1e-6;
+  const Vector3d along = Vector3d(1.0, 0.7, 0.03).normalized();
+  SurfaceDepth::LocalTissue before{};
+  ASSERT_TRUE(depth.at(Vector3d(8e-3, 8e-3, kTop + 1e-3), before));
+  for (int i = 1; i < 12000; ++i) {
+    SurfaceDepth::LocalTissue here{};
+    ASSERT_TRUE(depth.at(Vector3d(8e-3, 8e-3, kTop + 1e-3) + i * kStep * along, here));
+    ASSERT_LT((here.gradient - before.gradient).norm(), 6.0 / kEdge * kStep) << i;
+    ASSERT_NEAR(here.distance - before.distance,
+                0.5 * kStep * along.dot(here.gradient + before.gradient),
+                6.0 / kEdge * kStep * kStep);
+    before = here;
+  }
+}
+
 TEST(SoftTissueTest, AToolThatIsTakenInHandInItIsNotFeltBeforeItHasLeft) {
   const SoftTissueParameters one[] = {dura(3.0)};
   SoftTissue soft(layer(), one, kRadius);
