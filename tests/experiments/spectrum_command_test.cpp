@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sndfile.h>
 
 #include <cmath>
 #include <filesystem>
@@ -94,6 +95,39 @@ TEST_F(SpectrumCommandTest, AForceOrAnAccelerationGivesATableInNewtons) {
     EXPECT_NEAR(found.peaks[0].frequency, 300.0, 1.0) << file;
     EXPECT_NEAR(found.peaks[0].amplitude, 0.4, 0.004) << file;
     EXPECT_NEAR(found.peaks[1].amplitude, 0.2, 0.002) << file;
+  }
+}
+
+/// A balanced pair has the mean 0, and a sensor beside an empty channel half of what it felt.
+TEST_F(SpectrumCommandTest, ChannelsAreNotMixed) {
+  constexpr int kSamples = 48'000;
+  SF_INFO info{};
+  info.samplerate = kSamples;
+  info.channels = 2;
+  info.format = SF_FORMAT_WAV | SF_FORMAT_FLOAT;
+  std::vector<float> frames;
+  for (int i = 0; i < kSamples; ++i) {
+    const double turn = 2.0 * std::numbers::pi * 300.0 * i / kSamples;
+    frames.push_back(static_cast<float>(0.2 * std::sin(turn)));
+    frames.push_back(-2.0F * frames.back());
+  }
+  SNDFILE* file = sf_open((folder_ / "pair.wav").c_str(), SFM_WRITE, &info);
+  ASSERT_NE(file, nullptr);
+  EXPECT_EQ(sf_writef_float(file, frames.data(), kSamples), kSamples);
+  sf_close(file);
+  const std::string sensor = "haptrial spectrum pair.wav --unit N --full-scale 2 ";
+  ASSERT_EQ(run(sensor + "first.toml --channel 1\n" + sensor + "second.toml --channel 2").status,
+            0);
+  for (const auto& [table, amplitude] : {std::pair{"first.toml", 0.4}, {"second.toml", 0.8}}) {
+    const auto found = sound::read_spectrum_table(folder_ / table);
+    EXPECT_NEAR(found.of(sound::Burr::kCutting).contact.at(0).spectrum.peaks[0].amplitude,
+                amplitude, 0.01 * amplitude);
+  }
+  for (const std::string channel : {"", "--channel 3", "--channel -1"}) {
+    const auto result = run("haptrial spectrum pair.wav " + channel);
+    EXPECT_EQ(result.status, 2) << channel;
+    EXPECT_THAT(result.errors, HasSubstr("pair.wav: has 2 channels; --channel is ")) << channel;
+    EXPECT_THAT(result.errors, HasSubstr("; allowed: 1 to 2")) << channel;
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/files/csv.h"
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/base/scratch_folder.h"
@@ -34,6 +35,7 @@ struct SpectrumOptions {
   int segment{0};
   std::string unit;
   double full_scale{0.0};
+  int channel{0};  // from 1; 0: not given
   double mass{0.0};
   bool add{false};
   std::string wav;
@@ -147,18 +149,31 @@ Measured read_table(const std::string& file) {
   return measured;
 }
 
+/// Channels may be other sensors or axes, or cancel each other, so that they are not mixed.
+sound::Recording read_channel(const SpectrumOptions& options) {
+  std::vector<sound::Recording> channels = sound::read_channels(options.file);
+  const int count = static_cast<int>(channels.size());
+  const int channel = options.channel == 0 && count == 1 ? 1 : options.channel;
+  if (channel < 1 || channel > count) {
+    throw InputError(fmt::format("{}: has {}; --channel is {}; allowed: 1 to {}", options.file,
+                                 counted(channels.size(), "channel", "channels"), options.channel,
+                                 count));
+  }
+  return std::move(channels[static_cast<std::size_t>(channel - 1)]);
+}
+
 /// @throws InputError where the options do not say what the recording's numbers are
 Measured read_measured(const SpectrumOptions& options) {
   if (fs::path(options.file).extension() == ".csv") {
-    if (!options.unit.empty() || options.full_scale != 0.0) {
+    if (!options.unit.empty() || options.full_scale != 0.0 || options.channel != 0) {
       throw InputError(
-          fmt::format("{}: is a table, whose columns say the unit; --unit and "
-                      "--full-scale are for sound files",
+          fmt::format("{}: is a table, whose columns say the unit; --unit, --full-scale and "
+                      "--channel are for sound files",
                       options.file));
     }
     return read_table(options.file);
   }
-  Measured measured{sound::read_recording(options.file)};
+  Measured measured{read_channel(options)};
   if (options.unit.empty() != (options.full_scale == 0.0) || options.full_scale < 0.0) {
     throw InputError(
         fmt::format("--unit is '{}' and --full-scale {}; allowed: neither, or both: "
@@ -374,6 +389,8 @@ void add_spectrum(CLI::App& app, int& status) {
                   "Samples in a segment, a power of two (default: 40 ms or more)");
   sub->add_option("--unit", o.unit, "Unit of a sensor that recorded a sound file: N or m/s2");
   sub->add_option("--full-scale", o.full_scale, "Full scale of that file in the unit");
+  sub->add_option("--channel", o.channel,
+                  "Channel of a sound file that has several, from 1; they are not mixed");
   sub->add_option("--mass", o.mass,
                   "Mass of the handle, which the force of a table from an acceleration moves [kg]");
   sub->add_flag("--add", o.add, "Add the level to an existing table");
