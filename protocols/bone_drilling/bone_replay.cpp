@@ -251,8 +251,7 @@ struct BoneReplay::Work {
       verdict.difference = difference(sequence, pieces.take(sequence), *stage->simulator);
     }
     if (verdict.difference.empty()) {
-      verdict.difference =
-          difference(sequence, screws.take(sequence), stage->simulator->screws().ended());
+      verdict.difference = difference(sequence, screws.take(sequence), stage->simulator->screws());
     }
     verdict.emptied += emptied.size();
     verdict.tears += torn.size();

@@ -135,10 +135,19 @@ void DrillingRows::log_pieces(std::uint64_t sequence) noexcept {
       logs_.pieces.push(piece_row(simulator_, sequence, piece, 0));
     }
   }
-  if (const bone::Screw* screw = simulator_.screws().ended()) {
-    const bone::ScrewPlace& at = screw->place;
-    logs_.screws.push({sequence, at.tool, at.plate, at.hole, screw->piece, screw->depth,
-                       screw->purchase, screw->torque});
+  const bone::Screws& screws = simulator_.screws();
+  const auto log_screw = [&](const bone::Screw& screw) {
+    const bone::ScrewPlace& at = screw.place;
+    logs_.screws.push({sequence, at.tool, at.plate, at.hole, screw.piece, screw.depth,
+                       screw.purchase, screw.torque});
+  };
+  if (const bone::Screw* ended = screws.ended()) {
+    log_screw(*ended);
+  }
+  for (int number = 0; out.detached >= 0 && number < screws.count(); ++number) {
+    if (screws.place(number).plate == out.detached) {
+      log_screw(screws.screw(number));
+    }
   }
 }
 

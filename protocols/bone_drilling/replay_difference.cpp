@@ -73,10 +73,15 @@ std::string difference(std::uint64_t sequence, std::span<const record::PieceRow>
 }
 
 std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
-                       const bone::Screw* ended) {
-  const bool same = recorded.empty() || (ended != nullptr && recorded.size() == 1 &&
-                                         recorded.front().hole == ended->place.hole &&
-                                         recorded.front().purchase == ended->purchase);
+                       const bone::Screws& screws) {
+  const bool same = std::ranges::all_of(recorded, [&](const record::ScrewRow& row) {
+    int number = 0;
+    while (number < screws.count() &&
+           (screws.place(number).plate != row.plate || screws.place(number).hole != row.hole)) {
+      ++number;
+    }
+    return number < screws.count() && screws.screw(number).purchase == row.purchase;
+  });
   return same ? "" : fmt::format("on tick {} the screws are not those of the record", sequence);
 }
 

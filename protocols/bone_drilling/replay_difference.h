@@ -26,8 +26,8 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
 std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
                        const bone::Simulator& simulator);
 
-/// The screw whose driving ended on a tick. @param ended  null where none did
+/// How the screws of a tick's rows hold, to the bit.
 std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
-                       const bone::Screw* ended);
+                       const bone::Screws& screws);
 
 }  // namespace haptrial::protocols

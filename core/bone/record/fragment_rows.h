@@ -19,8 +19,8 @@ struct PieceRow {
   Eigen::Vector3d turn{Eigen::Vector3d::Zero()};   // rotation vector [rad]
 };
 
-/// A screw whose driving ended, a row of /screws; a later row of the same hole replaces it. Goes
-/// through a block log.
+/// A screw whose driving ended, a row of /screws; a later row of the same hole replaces it, as that
+/// of depth 0 when its plate comes off. Goes through a block log.
 struct ScrewRow {
   std::uint64_t sequence{0};
   std::int32_t tool{0};   // that drove it

@@ -109,6 +109,17 @@ void Screws::drive(const BoneWorld& world, std::span<const std::unique_ptr<Plate
   }
 }
 
+void Screws::take_out(int plate) noexcept {
+  for (int number = 0; number < count(); ++number) {
+    if (place(number).plate == plate) {
+      Screw& screw = screws_[at(number)];  // its place may be read meanwhile
+      screw.piece = -1;
+      screw.depth = screw.purchase = screw.torque = 0.0;
+      driven_ = driven_ == number ? -1 : driven_;
+    }
+  }
+}
+
 void Screws::rest() noexcept {
   ended_ = driven_ >= 0 ? driven_ : ended_;
   driven_ = -1;

@@ -26,7 +26,7 @@ struct ScrewPlace {
 struct Screw {
   ScrewPlace place;
   int piece{-1};         // that its thread met last; -1: none
-  double depth{0.0};     // of its tip below the plate [m]
+  double depth{0.0};     // of its tip below the plate; 0: its plate came off [m]
   double purchase{0.0};  // length of solid bone that its thread is in: density times length [m]
   double torque{0.0};    // that the last turn took [N·m]
 };
@@ -53,6 +53,8 @@ class Screws {
              double dt) noexcept;
   /// The hand has let go of the driver, or taken another tool.
   void rest() noexcept;
+  /// A plate comes off: its screws are in no bone any more.
+  void take_out(int plate) noexcept;
   /// The screw whose driving ended on this tick; null: none did.
   const Screw* ended() const noexcept { return ended_ >= 0 ? &screws_[at(ended_)] : nullptr; }
 

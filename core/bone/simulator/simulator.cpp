@@ -289,6 +289,8 @@ void Simulator::work(const SimulatorInput& input, std::uint32_t pressed) noexcep
     for (int plate = world_.plates() - 1; plate >= 0; --plate) {
       if (world_.plate_is_on(plate)) {
         world_.detach_plate(plate);
+        screws_.take_out(plate);
+        output_.detached = plate;
         break;
       }
     }

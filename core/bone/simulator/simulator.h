@@ -97,6 +97,7 @@ struct SimulatorOutput {
   bool finished{false};  // kFinish went down
   PieceSet moved{0};     // pieces that a hand carried, or let go of, on this tick
   bool let_go{false};    // of them
+  int detached{-1};      // plate that came off on this tick, with its screws; -1: none
   TubeOutput tube{};
 };
 

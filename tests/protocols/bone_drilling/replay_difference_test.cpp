@@ -78,5 +78,56 @@ TEST(ReplayDifferenceTest, ASlowSearchGivesTheSameBoneInAnotherOrder) {
   EXPECT_GT(reordered, 0);
 }
 
+/// A plate on a block of 16 mm, a screw in its first hole, the plate off again.
+TEST(ReplayDifferenceTest, ScrewsOfAPlateThatCameOffHoldNothing) {
+  bone::BoneModel block;
+  block.grid = {{32, 32, 32}, {0.0, 0.0, 0.0}, 5e-4};
+  block.labels.assign(block.grid.count(), 1);
+  block.structures = {{}, {"bone", {}, 1.0, false}};
+  bone::SimulatorParameters parameters = test::workshop(block);
+  bone::ToolSpec plate, driver;
+  plate.kind = bone::PlateTool{};
+  driver.kind = bone::ScrewTool{};
+  parameters.tools = {plate, driver};
+  bone::Simulator simulator(block, parameters);
+  DrillingLogs logs;
+  logs.watch_pieces();
+  DrillingRows rows(simulator, logs, 1000.0);
+  std::uint64_t sequence = 0;
+  const auto tick = [&](const Eigen::Vector3d& place, std::uint32_t functions, double power) {
+    bone::SimulatorInput input;
+    input.tool.tip.position = place;
+    input.functions = functions;
+    input.power = power;
+    simulator.tick(input);
+    rows.log_pieces(++sequence);
+  };
+  const Eigen::Vector3d top(0.0, 0.0, 8e-3);
+  const Eigen::Vector3d hole = top + simulator.plate(0)->holes().front().translation();
+  simulator.begin(0);
+  tick(top, bone::bit(bone::Function::kApply), 0.0);
+  ASSERT_EQ(simulator.world().plates(), 1);
+  tick(hole, bone::bit(bone::Function::kNextTool), 0.0);
+  for (int i = 0; i < 5000; ++i) {  // 7 mm at 1.6 mm/s
+    tick(hole, 0, 1.0);
+  }
+  tick(hole, bone::bit(bone::Function::kDetach), 0.0);
+  ASSERT_FALSE(simulator.world().plate_is_on(0));
+  std::vector<record::ScrewRow> screws;
+  logs.screws.flush([&](std::span<const record::ScrewRow> some) {
+    screws.insert(screws.end(), some.begin(), some.end());
+  });
+  ASSERT_EQ(screws.size(), 2u);
+  EXPECT_GT(screws[0].purchase, 4e-3);
+  EXPECT_EQ(screws[1].sequence, sequence);
+  EXPECT_EQ(screws[1].plate, screws[0].plate);
+  EXPECT_EQ(screws[1].hole, screws[0].hole);
+  EXPECT_EQ(screws[1].depth, 0.0);
+  EXPECT_EQ(screws[1].purchase, 0.0);
+  EXPECT_EQ(difference(sequence, std::span(screws).last(1), simulator.screws()), "");
+  EXPECT_THAT(difference(sequence, std::span(screws).first(1), simulator.screws()),
+              HasSubstr("the screws are not those of the record"));
+}
+
 }  // namespace
 }  // namespace haptrial::protocols

@@ -108,6 +108,21 @@ TEST_F(FragmentTest, TheLastRowOfAHoleCountsAndWeakScrewsDoNotHold) {
   EXPECT_NEAR(fit.purchase, 8e-3, 1e-12);
 }
 
+TEST_F(FragmentTest, ScrewsWhosePlateCameOffDoNotHold) {
+  for (const int plate : {0, 1}) {
+    for (const int hole : {0, 1}) {
+      meter_.add(record::ScrewRow{10, 3, plate, hole, hole, 7e-3, 4e-3, 0.3});
+    }
+  }
+  for (const int hole : {0, 1}) {
+    meter_.add(record::ScrewRow{20, 3, 0, hole, -1, 0.0, 0.0, 0.0});
+  }
+  const FragmentFit fit = meter_.fit();
+  EXPECT_EQ(fit.screws, 2);
+  EXPECT_EQ(fit.screws_in_bone, 1);
+  EXPECT_NEAR(fit.purchase, 8e-3, 1e-12);
+}
+
 TEST_F(FragmentTest, FiguresAreThoseOfAnOsteotomyOnlyWhereOneIsPlanned) {
   Procedure p = test::procedure_on(*bone_);
   const auto columns = [](const Procedure& procedure) {
