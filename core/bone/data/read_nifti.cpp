@@ -70,6 +70,16 @@ VolumeHead nifti_head(const std::string& name, const nifti_image& image) {
   return head;
 }
 
+/// Loads the values as they are in the file. The library makes real numbers that are not finite 0,
+/// which is water in a scan; integers of the same size it leaves alone.
+bool load_nifti(nifti_image& image) {
+  const int type = image.datatype;
+  image.datatype = type == DT_FLOAT32 ? DT_INT32 : type == DT_FLOAT64 ? DT_INT64 : type;
+  const bool loaded = nifti_image_load(&image) == 0 && image.data != nullptr;
+  image.datatype = type;
+  return loaded;
+}
+
 template <class T>
 void convert_nifti(const void* data, double slope, double offset, BigArray<float>& values) {
   const auto* bytes = static_cast<const char*>(data);
@@ -123,8 +133,7 @@ SourceVolume read_nifti(const std::filesystem::path& file, const Room& room) {
   }
   SourceVolume volume{nifti_head(name, *image), {}};
   check_head(name, volume.head, room);
-  if (static_cast<std::size_t>(image->nvox) != volume.head.count() ||
-      nifti_image_load(image.get()) != 0 || image->data == nullptr) {
+  if (static_cast<std::size_t>(image->nvox) != volume.head.count() || !load_nifti(*image)) {
     throw InputError(fmt::format("{}: is shorter than its header states, or damaged", name));
   }
   volume.values.resize(volume.head.count());

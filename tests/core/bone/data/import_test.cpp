@@ -325,7 +325,24 @@ TEST_F(ImportTest, ValuesThatAreNoNumbersAreCounted) {
     const float value = i % 4 == 0 ? NAN : i < 32 ? -1000.0F : 1200.0F;
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  EXPECT_THAT(load("v.nrrd", bytes).notes, ElementsAre(HasSubstr("16 of the 64 values of")));
+  const BoneModel nrrd = load("v.nrrd", bytes);
+  EXPECT_THAT(nrrd.notes, ElementsAre(HasSubstr("16 of the 64 values of")));
+  for (const bool wide : {false, true}) {  // the same body as NIfTI of 32 and of 64 bits
+    std::string nifti = nifti_of(volume);
+    nifti[70] = wide ? 64 : 16;
+    nifti[72] = wide ? 64 : 32;
+    nifti.resize(352);
+    for (int i = 0; i < 64; ++i) {
+      const float value = i % 4 == 0 ? NAN : i < 32 ? -1000.0F : 1200.0F;
+      const auto twice = static_cast<double>(value);
+      nifti.append(
+          wide ? reinterpret_cast<const char*>(&twice) : reinterpret_cast<const char*>(&value),
+          wide ? sizeof twice : sizeof value);
+    }
+    const BoneModel model = load("v.nii", nifti);
+    EXPECT_THAT(model.notes, ElementsAre(HasSubstr("16 of the 64 values of")));
+    EXPECT_EQ(model.labels, nrrd.labels);
+  }
 }
 
 // A nerve of one voxel in a block of bone is lost in voxels of four, and the bone is not.
