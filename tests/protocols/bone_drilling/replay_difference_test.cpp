@@ -86,7 +86,7 @@ TEST(ReplayDifferenceTest, ScrewsOfAPlateThatCameOffHoldNothing) {
   block.structures = {{}, {"bone", {}, 1.0, false}};
   bone::SimulatorParameters parameters = test::workshop(block);
   bone::ToolSpec plate, driver;
-  plate.kind = bone::PlateTool{};
+  plate.kind.emplace<bone::PlateTool>().holes = 2;
   driver.kind = bone::ScrewTool{};
   parameters.tools = {plate, driver};
   bone::Simulator simulator(block, parameters);
