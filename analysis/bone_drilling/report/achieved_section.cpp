@@ -4,7 +4,6 @@
 
 #include "analysis/bone_drilling/report/validity_table.h"
 #include "analysis/bone_drilling/report/validity_words.h"
-#include "analysis/statistics/design/interval_word.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -42,7 +41,7 @@ void add_achieved_section(Document& document, const ValidityResult& result) {
     bool any = false;
     for (std::size_t g = 0; g < groups.size(); ++g) {
       any = any || means[g].procedures > 0;
-      row.push_back(interval_word(means[g].participant_means));
+      row.push_back(mean_word(means[g]));
     }
     if (any) {  // else nobody came near this structure
       rows.push_back(std::move(row));

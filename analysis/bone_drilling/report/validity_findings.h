@@ -31,6 +31,7 @@ struct GroupValues {
   std::size_t procedures{0};
   Defined<MeanInterval> pooled{Undefined{""}};  // over procedures, as the source
   Defined<MeanInterval> participant_means{Undefined{""}};
+  std::optional<double> mean{};  // of participants' means, also of one that has no interval
 };
 
 /// Experts against novices in one quantity. The tail is that of the expectation.

@@ -163,8 +163,8 @@ void Report::add_ratings() {
   picture("figure-16-ratings");
   std::vector<Row> rows;
   for (const GroupValues* g : shown_groups(v_)) {
-    rows.push_back({g->group, std::to_string(g->participants), std::to_string(g->procedures),
-                    interval_word(g->participant_means)});
+    rows.push_back(
+        {g->group, std::to_string(g->participants), std::to_string(g->procedures), mean_word(*g)});
   }
   document_.table({"group", "participants", "procedures", "mean of participants' means [95 % CI]"},
                   rows);
@@ -212,9 +212,8 @@ void Report::add_metrics() {
     const char* expected = m.kind.experts == Expected::kHigher  ? "higher"
                            : m.kind.experts == Expected::kLower ? "lower"
                                                                 : "–";
-    groups.push_back({name_of(m.kind), expected, interval_word(experts.participant_means),
-                      interval_word(m.groups.back().participant_means), word(m.contrast_p),
-                      word(m.contrast_holm), area_word(m.contrast.roc)});
+    groups.push_back({name_of(m.kind), expected, mean_word(experts), mean_word(m.groups.back()),
+                      word(m.contrast_p), word(m.contrast_holm), area_word(m.contrast.roc)});
     const auto& r = m.relation.means;
     relations.push_back({name_of(m.kind), r ? std::to_string(r->count) : "–", correlation_word(r),
                          word(m.relation_holm), correlation_word(m.relation.ranks),

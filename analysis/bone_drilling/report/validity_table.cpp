@@ -31,6 +31,9 @@ GroupValues values_of_group(const ValueTable& table, const ValueTable& means, st
   group.participants = by_participant.size();
   group.pooled = mean_interval(pooled);
   group.participant_means = mean_interval(by_participant);
+  if (const Defined<Moments> m = moments(by_participant)) {
+    group.mean = m->mean();
+  }
   return group;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/document/number.h"
+#include "analysis/statistics/design/interval_word.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {
@@ -19,6 +21,11 @@ std::string difference_word(double difference, double low, double high, double d
 }  // namespace
 
 std::string undefined(const std::string& because) { return "not defined, because " + because; }
+
+std::string mean_word(const GroupValues& group) {
+  return !group.participant_means && group.mean ? number(*group.mean)
+                                                : interval_word(group.participant_means);
+}
 
 std::string word(const Defined<double>& p) { return p ? p_value(*p) : "–"; }
 

@@ -11,6 +11,8 @@ namespace haptrial::analysis::drilling {
 /// those of all studies).
 
 std::string undefined(const std::string& because);
+/// The mean of participants' means: "3.438 [3.182, 3.693]", "3.438" if it has no interval, or "–".
+std::string mean_word(const GroupValues& group);
 /// "p = 0.0123" or "–".
 std::string word(const Defined<double>& p);
 /// "0.63, p = 0.011" or "–".

@@ -336,6 +336,24 @@ TEST(ValidityTest, CountsWhatThereIsAndListsEveryGroupOnce) {
   EXPECT_THAT(report, Not(testing::ContainsRegex("[^0-9]1 (participants|procedures|metrics)")));
 }
 
+/// A trainee's first osteotomy: the figures of one participant have no interval, and are known.
+TEST(ValidityTest, TheMeanOfOneParticipantIsShownWithoutAnInterval) {
+  const Study all = made(12, 1.0, 0.5);
+  Study one;
+  one.procedures = {all.procedures[0]};
+  FragmentFit fit;
+  fit.came_off = true;
+  fit.gap = 0.56e-3;
+  fit.screws = 4;
+  fit.screws_in_bone = 2;
+  one.procedures[0].achieved.fragment = fit;
+  one.regions.resize(1);
+  const std::string report = to_markdown(validity_report(result_of(one), {}));
+  EXPECT_THAT(report,
+              HasSubstr("gap left at the cut against the plan \\[mm\\] | 0.5600 | – | – |"));
+  EXPECT_THAT(report, HasSubstr("holding in the fragment \\[screws\\] | 2.000 | – | – |"));
+}
+
 TEST(ValidityTest, SoftTissueThatToreIsListed) {
   Study study = made(14, 1.0, 0.5);
   EXPECT_THAT(to_markdown(validity_report(result_of(study), {})),
