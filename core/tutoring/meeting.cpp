@@ -1,12 +1,15 @@
 #include "core/tutoring/meeting.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/tutoring/secret.h"
 #include "core/tutoring/waiting_guests.h"
 
 namespace haptrial::tutoring {
@@ -24,18 +27,42 @@ Patience patience_for_key(const MeetingRequest& request, Clock::time_point end) 
   return {std::min(end, Clock::now() + kForKey), request.pulse};
 }
 
-void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
-  if (theirs.study != request.study) {
-    throw InputError(
-        "the other side was started with another definition, subject, participant, session, seed "
-        "or number of trials; both must have the same ones");
+using Checksums = std::array<unsigned char, 32>;  // four bytes for each shared term
+constexpr std::size_t kBytes = Checksums{}.size() / kMostShared;
+
+Checksums checksums_of(const std::vector<SharedTerm>& shared) {
+  Checksums all{};
+  for (std::size_t i = 0; i < std::min(shared.size(), kMostShared); ++i) {
+    const auto sum = checksum_of(shared[i].text);
+    std::copy_n(sum.begin(), kBytes, all.begin() + static_cast<std::ptrdiff_t>(i * kBytes));
   }
+  return all;
+}
+
+/// Names the terms that differ.
+void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
+  const Checksums own = checksums_of(request.shared);
+  if (theirs.study == own) {
+    return;
+  }
+  std::vector<std::string> differ;
+  for (std::size_t i = 0; i < request.shared.size(); ++i) {
+    const auto place = static_cast<std::ptrdiff_t>(i * kBytes);
+    if (!std::equal(own.begin() + place, own.begin() + place + kBytes,
+                    theirs.study.begin() + place)) {
+      differ.push_back(request.shared[i].name);
+    }
+  }
+  const std::string all =
+      differ.empty() ? "kind of study" : fmt::format("{}", fmt::join(differ, ", "));
+  throw InputError(
+      fmt::format("the other side was started with another {}; both must have the same ones", all));
 }
 
 Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
   const Socket listener = listening(request.port);
   Socket datagrams = datagram_socket(request.port);
-  Handshake handshake(secret, {port_of(datagrams), request.study});
+  Handshake handshake(secret, {port_of(datagrams), checksums_of(request.shared)});
   WaitingGuests guests(listener, handshake.opening(), request.notice);
   while (true) {
     auto guest = guests.next({end, request.pulse});
@@ -68,7 +95,7 @@ void refuse_if_busy(std::span<const unsigned char> message) {
 Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
   Address other = address_of(request.guest_of);
   Socket datagrams = datagram_socket(0);
-  Handshake handshake(secret, {port_of(datagrams), request.study});
+  Handshake handshake(secret, {port_of(datagrams), checksums_of(request.shared)});
   const Socket socket = connected(other, {end, request.pulse});
   Handshake::Opening opening;
   if (!receive_all(socket, opening, patience_for_one(request, end))) {

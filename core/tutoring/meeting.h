@@ -1,10 +1,11 @@
 #pragma once
 
-#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "core/tutoring/handshake.h"
 #include "core/tutoring/sockets.h"
@@ -19,10 +20,18 @@ struct Met {
   bool follows{false};  // the host: a guest behind a router is where its datagrams come from
 };
 
+/// Something that both sides must have alike.
+struct SharedTerm {
+  std::string name;  // in sentences: "seed"
+  std::string text;  // only a checksum of it is told
+};
+
+inline constexpr std::size_t kMostShared = 8;
+
 struct MeetingRequest {
-  std::string guest_of;      // "name:port" of the host; empty: this side is the host
-  std::uint16_t port{7400};  // at which the host listens; its datagrams use the same number
-  std::array<unsigned char, 32> study{};  // checksum of what both must have alike
+  std::string guest_of;            // "name:port" of the host; empty: this side is the host
+  std::uint16_t port{7400};        // at which the host listens; its datagrams use the same number
+  std::vector<SharedTerm> shared;  // at most kMostShared, in the same order on both sides
   std::chrono::seconds patience{120};
   std::function<void()> pulse;                     // asked ten times a second; may throw
   std::function<void(const std::string&)> notice;  // of guests that were turned away

@@ -195,6 +195,16 @@ std::map<std::string, std::string> definition_values(std::string_view definition
   return values;
 }
 
+std::string binding_text(std::string_view definition, const DefinitionRules& rules) {
+  std::string text;
+  for (const auto& [key, value] : values_of(definition, rules)) {
+    if (!rules.may_change(key)) {
+      text += fmt::format("{} = {}\n", key, value);
+    }
+  }
+  return text;
+}
+
 std::optional<std::uint64_t> table_fingerprint(std::string_view definition,
                                                std::string_view table) {
   Values values;

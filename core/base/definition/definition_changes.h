@@ -58,6 +58,11 @@ DefinitionChanges definition_changes(std::string_view before, std::string_view a
 std::map<std::string, std::string> definition_values(std::string_view definition,
                                                      std::span<const std::string> names);
 
+/// The keys of a definition that may not change, each with its value, in one form: equal for two
+/// definitions of one study, but for kept keys, which count for nothing.
+/// @throws InputError for a text that is not TOML
+std::string binding_text(std::string_view definition, const DefinitionRules& rules);
+
 /// A number that equal values of a table of the definition share and different values, but for one
 /// case in 2^64, do not; comments, layout and the order of keys do not count.
 /// @returns nothing when the definition has no such table or is not TOML.

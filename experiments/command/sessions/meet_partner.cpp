@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "core/base/definition/definition_changes.h"
 #include "core/base/error.h"
 #include "core/tutoring/link_thread.h"
 #include "core/tutoring/meeting.h"
@@ -13,16 +14,22 @@
 #include "experiments/command/arguments.h"
 #include "experiments/control/interrupt.h"
 #include "experiments/runner/version.h"
+#include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
 namespace {
 
-/// Checksum of all that both sides' presentation follows from.
-std::array<unsigned char, 32> study_of(const SessionRequest& request,
-                                       const protocols::Definition& definition) {
-  return tutoring::checksum_of(fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", program_version(),
-                                           request.subject, request.participant, request.session,
-                                           request.seed, request.max_trials, definition.text));
+/// All that both sides' presentation follows from. Each side has its own room, devices and texts.
+std::vector<tutoring::SharedTerm> shared_terms(const SessionRequest& request,
+                                               const protocols::Definition& definition) {
+  const DefinitionRules rules = protocols::study_rules(*request.protocol, protocols::Hand::kPerson);
+  return {{"definition", binding_text(definition.text, rules)},
+          {"version of the program", program_version()},
+          {"subject", request.subject},
+          {"participant", fmt::to_string(request.participant)},
+          {"session", fmt::to_string(request.session)},
+          {"seed", fmt::to_string(request.seed)},
+          {"number of trials", fmt::format("{}", request.max_trials)}};
 }
 
 void say(const std::string& line) {
@@ -41,7 +48,7 @@ std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
   const tutoring::Secret secret = tutoring::Secret::read(options.secret);
   tutoring::MeetingRequest meeting;
   meeting.guest_of = options.learn_from;
-  meeting.study = study_of(request, definition);
+  meeting.shared = shared_terms(request, definition);
   meeting.pulse = [] {
     if (interrupted()) {
       throw RunError("interrupted");

@@ -296,13 +296,15 @@ TEST(MeetingTest, AnotherStudyIsRefusedOnBothSides) {
   std::string told;
   std::thread waiting([&] {
     MeetingRequest request = as_host(port);
-    request.study = {1};
+    request.shared = {{"definition", "a"}, {"subject", "P01"}, {"seed", "1"}};
     told = message_of<InputError>([&] { meet(secret(), request); });
   });
-  EXPECT_THAT(message_of<InputError>([&] { soon([&] { return meet(secret(), as_guest(port)); }); }),
-              HasSubstr("another definition"));
+  MeetingRequest request = as_guest(port);
+  request.shared = {{"definition", "b"}, {"subject", "P01"}, {"seed", "2"}};
+  EXPECT_THAT(message_of<InputError>([&] { soon([&] { return meet(secret(), request); }); }),
+              HasSubstr("another definition, seed; both"));
   waiting.join();
-  EXPECT_THAT(told, HasSubstr("another definition"));
+  EXPECT_THAT(told, HasSubstr("another definition, seed; both"));
 }
 
 TEST(MeetingTest, WhatCannotBeIsSaid) {

@@ -67,6 +67,15 @@ TEST(DefinitionChangesTest, AKeptKeyMayComeAndGoButNotHaveAnotherValue) {
                                               "channels.b.units.x", "channels.c.units.x"));
 }
 
+TEST(DefinitionChangesTest, TheBindingTextIsThatOfTheStudy) {
+  const std::string study = "[design]\ntrials = 6\n[machine]\nwindow = 8\n";
+  const auto text = [](const std::string& definition) { return binding_text(definition, kRules); };
+  EXPECT_EQ(text(study), "design.trials = 6\nmachine.window = 8\n");
+  EXPECT_EQ(text("[texts]\nrest = \"a\"\n[machine]\nindex = 2\n[design]\r\ntrials = 6.0\r\n"),
+            text(study));
+  EXPECT_NE(text("[design]\ntrials = 7\n"), text(study));
+}
+
 TEST(DefinitionChangesTest, AKeyOfAFreeTableMayBeBound) {
   const auto changes = between("[machine]\nindex = 0\nwindow = 8\ndelay = 1\n",
                                "[machine]\nindex = 1\nwindow = 9\ndelay = 2\n");
