@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
+#include <numeric>
 #include <string_view>
 
 #include "core/channel/channel_row.h"
@@ -45,10 +47,28 @@ ChannelQuality quality_of(const record::SessionReader& reader, const std::string
   return quality;
 }
 
+/// The longest intervals between samples are those of the breaks.
+void find_silence(const record::SessionReader& reader, ChannelQuality& quality) {
+  quality.breaks = std::min(quality.breaks, quality.samples > 1 ? quality.samples - 2 : 0);
+  if (quality.breaks == 0) {
+    return;
+  }
+  const auto table = reader.description(std::string(kPrefix) + quality.name);
+  const std::vector<std::int64_t> times = reader.integers(*table, "time_ns", 0, quality.samples);
+  std::vector<std::int64_t> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    intervals.push_back(times[i] - times[i - 1]);
+  }
+  const auto longest = intervals.begin() + static_cast<std::ptrdiff_t>(quality.breaks);
+  std::ranges::nth_element(intervals, longest, std::greater{});
+  quality.silence =
+      1e-9 * static_cast<double>(std::accumulate(intervals.begin(), longest, std::int64_t{0}));
+}
+
 }  // namespace
 
 double ChannelQuality::rate() const {
-  return seconds > 0.0 ? static_cast<double>(samples - 1) / seconds : 0.0;
+  return seconds > silence ? static_cast<double>(samples - 1 - breaks) / (seconds - silence) : 0.0;
 }
 
 std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader) {
@@ -66,10 +86,14 @@ std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader)
   for (const channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
     const auto found = std::ranges::find(all, row.channel, &ChannelQuality::name);
     if (found != all.end()) {
+      found->breaks += row.what == channel::Incident::kBack ? 1 : 0;
       found->losses += row.what == channel::Incident::kLost ? 1 : 0;
       found->clock_steps += row.what == channel::Incident::kClockStep ? 1 : 0;
       found->messages += row.what == channel::Incident::kMessage ? 1 : 0;
     }
+  }
+  for (ChannelQuality& quality : all) {
+    find_silence(reader, quality);
   }
   return all;
 }

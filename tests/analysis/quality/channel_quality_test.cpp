@@ -1,0 +1,48 @@
+#include "analysis/quality/channel_quality.h"
+
+#include <gtest/gtest.h>
+
+#include <span>
+#include <vector>
+
+#include "core/channel/channel_row.h"
+#include "core/record/hdf5/session_writer.h"
+#include "core/record/read/session_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace haptrial::analysis {
+namespace {
+
+using channel::Incident;
+
+TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
+  const test::TemporaryFolder folder;
+  const channel::ChannelTable grip("grip", {{"force", "N"}}, 64);
+  std::vector<channel::ChannelRow> rows(601);  // 100 a second, silent for 4 s after three
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].sample = i;
+    rows[i].time_ns = 10'000'000 * static_cast<std::int64_t>(i) + (i > 300 ? 4'000'000'000 : 0);
+  }
+  const std::vector<channel::IncidentRow> incidents{
+      {4'000'000'000, "grip", Incident::kLost, 0.0, "no data come any more"},
+      {7'010'000'000, "grip", Incident::kBack, 3.0, ""},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, "warm"}};
+  record::SessionInfo info;
+  info.subject = "P1";
+  record::SessionWriter writer(folder / "a.h5", info,
+                               {&grip.table(), &record::table_of<channel::IncidentRow>()});
+  writer.add(record::Rows(grip.table(), rows.data(), rows.size()));
+  writer.add(std::span<const channel::IncidentRow>(incidents));
+  writer.set_timing({}, {0, 0, 0});
+  writer.close();
+  const record::SessionReader reader(folder / "a.h5");
+  const std::vector<ChannelQuality> all = channel_quality(reader);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NEAR(all[0].rate(), 100.0, 1e-9);
+  EXPECT_NEAR(all[0].seconds, 10.0, 1e-9);
+  EXPECT_EQ(all[0].losses, 1u);
+  EXPECT_EQ(all[0].messages, 1u);
+}
+
+}  // namespace
+}  // namespace haptrial::analysis
