@@ -10,6 +10,8 @@ using tutoring::Partner;
 
 static constexpr double kBackToOwnWorld = 0.05;  // from the partner's after a loss [s]
 
+static constexpr double kLongestCatchUp = 0.05;  // with a partner that skipped ticks [s]
+
 CoupledSide::CoupledSide(const SideParameters& parameters, const Vector3d& start)
     : p_(parameters),
       buffer_(std::make_unique<JitterBuffer>(parameters.late,
@@ -51,10 +53,27 @@ void CoupledSide::look_at_link(std::int64_t now_ns, double dt) noexcept {
 void CoupledSide::look_at_partner(std::int64_t now_ns, double dt) noexcept {
   const TickMessage* even = p_.even ? buffer_->take(now_ns) : nullptr;
   const TickMessage& message = even != nullptr ? *even : newest_;
-  used_for_ = message.sequence != used_.sequence ? 0.0 : used_for_ + dt;
+  const bool is_new = message.sequence != used_.sequence;
+  const double later = 1e-9 * static_cast<double>(message.sent_ns - used_.sent_ns);  // [s]
+  const bool skips = is_new && used_.sequence > 0 && later > 1.5 * dt && !p_.sparse;
+  used_for_ = is_new ? 0.0 : used_for_ + dt;
   used_ = message;
   const Partner sent{{message.position, message.velocity}, message.force};
-  partner_ = p_.sparse ? tutoring::expected(sent, used_for_, p_.deadband.keepalive) : sent;
+  const Partner now = p_.sparse ? tutoring::expected(sent, used_for_, p_.deadband.keepalive) : sent;
+  if (skips) {
+    behind_ = {
+        {partner_.tool.position - now.tool.position, partner_.tool.velocity - now.tool.velocity},
+        partner_.force - now.force};
+    catch_up_ = catching_up_ = std::min(later, kLongestCatchUp);
+  }
+  catching_up_ = std::max(0.0, catching_up_ - dt);
+  partner_ = now;
+  if (catching_up_ > 0.0) {
+    const double share = catching_up_ / catch_up_;
+    partner_.tool.position += share * behind_.tool.position;
+    partner_.tool.velocity += share * behind_.tool.velocity;
+    partner_.force += share * behind_.force;
+  }
 }
 
 Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {

@@ -89,6 +89,9 @@ class CoupledSide {
   std::int64_t heard_ns_{0};  // when the newest came
   double energy_heard_{0.0};  // highest total
   tutoring::Partner partner_;
+  tutoring::Partner behind_;  // of partner_ behind what came, when ticks were skipped
+  double catch_up_{0.0};      // in which it catches up: the time that was skipped, within 50 ms [s]
+  double catching_up_{0.0};   // that is left of it [s]
   Eigen::Vector3d last_place_;                       // of the own tool
   Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
   bool stepped_{false};

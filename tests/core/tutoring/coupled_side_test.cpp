@@ -235,6 +235,33 @@ TEST(CoupledSideTest, ALostLinkLetsGoOver50MsAfterTheDeadlineAndComesBackByARamp
   EXPECT_GT(last, 0.1);
 }
 
+TEST(CoupledSideTest, AfterTicksThatDidNotComeTheForceCatchesUpWithoutAStep) {
+  SideParameters p;
+  p.deadline = 1.0;
+  p.ramp = 0.05;
+  CoupledSide side(p);
+  Vector3d was = Vector3d::Zero();
+  double last = 0.0;
+  std::uint64_t sequence = 0;
+  for (int tick = 1; tick <= 400; ++tick) {
+    ++sequence;
+    const std::int64_t now = 1'000'000 * static_cast<std::int64_t>(tick);
+    if (tick <= 200 || tick > 240) {  // 40 ms are lost
+      TickMessage m;
+      m.sequence = sequence;
+      m.sent_ns = now;
+      m.force = {0.0, tick <= 200 ? 10.0 : 2.0, 0.0};
+      side.hear(m, now);
+    }
+    last = side.step({}, now, kDt).force.y();
+    if (tick > 100) {
+      EXPECT_LT(std::abs(last - was.y()), 8.0 / 40.0) << tick;
+    }
+    was.y() = last;
+  }
+  EXPECT_NEAR(last, 2.0, 1e-9);
+}
+
 TEST(CoupledSideTest, AStopArrivesWithinOneWay) {
   CoupledSide side({});
   TickMessage m;
