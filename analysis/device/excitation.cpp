@@ -161,6 +161,12 @@ Eigen::Vector3d Excitation::centring(CertificatePart part, long tick,
   return (-stiffness * axis.dot(tool.position) - kCalming * axis.dot(tool.velocity)) * axis;
 }
 
+int Excitation::moved_axis(CertificatePart part, long tick) const noexcept {
+  Eigen::Index axis = 0;
+  axis_at(tick, axis_ticks(part)).maxCoeff(&axis);
+  return static_cast<int>(axis);
+}
+
 Eigen::Vector3d Excitation::position(CertificatePart part, long tick, double reach) const noexcept {
   if (part != CertificatePart::kMove) {
     return Eigen::Vector3d::Zero();

@@ -52,6 +52,8 @@ class Excitation {
   /// The force that keeps a handle that was let go near the origin, along the axis that moves;
   /// added to the command of kFree and kLoaded [N].
   Eigen::Vector3d centring(CertificatePart part, long tick, const PointState& tool) const noexcept;
+  /// The axis along which kFree or kLoaded moves the handle on this tick, 0 to 2.
+  int moved_axis(CertificatePart part, long tick) const noexcept;
   /// Where a machine that holds the handle takes it; the origin unless the part is kMove [m].
   /// @param reach  to either side [m]
   Eigen::Vector3d position(CertificatePart part, long tick, double reach) const noexcept;

@@ -89,6 +89,16 @@ TEST_F(CertificateCommandTest, TheVirtualArmGetsACertificateWithItsPlantedFaults
               AllOf(HasSubstr("rehearsal"), HasSubstr("gain 0.87"), HasSubstr("<svg")));
 }
 
+TEST_F(CertificateCommandTest, AHandleThatFallsByTheWeightThatIsLeftIsCaught) {
+  write(at("arm.toml"),
+        shipped_text("stiffness_discrimination.toml") + kFaults + "gravity_error = -0.12\n");
+  const test::CommandResult result =
+      run("device-test virtual --definition arm.toml --certificate out --mass 0.2");
+  ASSERT_EQ(result.status, 0) << result.output << result.errors;
+  const Json root = json_of(at("out") / "certificate.json");
+  EXPECT_NEAR(root["summary"]["findings"]["gain"]["estimate"].get<double>(), 0.87, 0.01);
+}
+
 TEST_F(CertificateCommandTest, WithoutASensorItSaysWhatItTakes) {
   const test::CommandResult result = run("device-test virtual --certificate out --without-sensor");
   ASSERT_EQ(result.status, 0) << result.output << result.errors;

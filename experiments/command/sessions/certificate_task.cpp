@@ -11,6 +11,9 @@ namespace {
 using analysis::CertificatePart;
 using Eigen::Vector3d;
 
+constexpr double kNear = 0.8;        // of the workspace, to which a free handle may fall
+constexpr double kHold = 80.0;       // beyond it [N/m]
+constexpr double kCalm = 4.0;        // [N·s/m]
 constexpr double kPress = 1.0;       // on a wall [N]
 constexpr double kBack = 0.003;      // in front of the wall, from which the handle is let go [m]
 constexpr double kReady = 0.6;       // time to take it there [s]
@@ -187,14 +190,28 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
 Vector3d CertificateTask::command(const device::DeviceReading& reading) noexcept {
   const CertificatePart part = parts_[at_];
   if (part == CertificatePart::kWall) {
-    return walls_.command(reading.tool);
+    return walls_.command(reading.tool) + catching(reading.tool, excitation_.axes().front());
   }
   Vector3d wanted = excitation_.command(part, tick_);
   if (is_free(part)) {
-    wanted += excitation_.centring(part, tick_, reading.tool);
+    wanted += excitation_.centring(part, tick_, reading.tool) +
+              catching(reading.tool, excitation_.moved_axis(part, tick_));
   }
   const double most = envelope_.limits().max_force;
   return wanted.norm() > most ? Vector3d(wanted * (most / wanted.norm())) : wanted;
+}
+
+/// Holds a handle that was let go and falls, by weight that is left, along the other axes.
+Vector3d CertificateTask::catching(const PointState& tool, int moved) const noexcept {
+  const double near = of_ == device::Part::kTip ? kNear * device_.info().workspace_radius : kFar;
+  Vector3d force = Vector3d::Zero();
+  for (const int axis : excitation_.axes()) {
+    const double x = tool.position[axis];
+    if (axis != moved && std::abs(x) > near) {
+      force[axis] = -kHold * (x - std::copysign(near, x)) - kCalm * tool.velocity[axis];
+    }
+  }
+  return force;
 }
 
 void CertificateTask::keep(const device::DeviceReading& reading, const Vector3d& given,
