@@ -73,13 +73,13 @@ bool has_every_pair(const Eigen::MatrixXd& counts) {
 }
 
 /// Values of a quantity, and the participants under a condition who have none.
-struct Collected {
+struct CollectedPairs {
   std::vector<QuantityValue> values;
   std::map<std::string, std::vector<std::string>> missing;  // names by reason
 };
 
 void add_values(const Condition& condition, const std::vector<std::string>& items,
-                const Defined<Eigen::VectorXd>& values, Collected& to) {
+                const Defined<Eigen::VectorXd>& values, CollectedPairs& to) {
   if (!values) {
     const std::string levels = fmt::format("{}", fmt::join(condition.second, ", "));
     to.missing[values.because()].push_back(condition.first +
@@ -118,7 +118,7 @@ void remove_open_intervals(const std::vector<QuantityValue>& shares, Quantity& w
   }
 }
 
-Quantity with_reasons(Quantity result, const Collected& from) {
+Quantity with_reasons(Quantity result, const CollectedPairs& from) {
   for (const auto& [because, names] : from.missing) {
     result.missing.push_back(fmt::format("{}: no values of {}, because {}",
                                          capitalized(result.title), fmt::join(names, "; "),
@@ -130,7 +130,7 @@ Quantity with_reasons(Quantity result, const Collected& from) {
 }  // namespace
 
 std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan& plan) {
-  Collected worth, share;
+  CollectedPairs worth, share;
   const auto all = wins_of(data, plan);
   const auto items_under = items_of(all);
   for (const auto& [condition, wins] : all) {
