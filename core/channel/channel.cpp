@@ -52,7 +52,6 @@ Channel::Channel(ChannelOptions options, Now now, std::uint64_t first)
       clock_(options_.plan.clock),
       next_(first) {
   state_.values.fill(std::numeric_limits<double>::quiet_NaN());
-  state_.peaks = state_.values;
   newest_ = seen_ = state_;
   thread_ = std::thread([this] { run(); });
 }
@@ -69,10 +68,7 @@ std::string Channel::wait_until_open() {
 }
 
 const ChannelState& Channel::newest() noexcept {
-  if (!latest_.read(newest_)) {
-    newest_.peaks = newest_.values;
-  }
-  looks_.fetch_add(1, std::memory_order_release);  // after reading, so that no sample is left out
+  latest_.read(newest_);
   return newest_;
 }
 
@@ -144,21 +140,9 @@ void Channel::take(const Measured& sample) {
   } else if (no_room_ > 0) {
     note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)));
   }
-  note_peaks(row.values);
   state_.values = row.values;
   state_.time_ns = row.time_ns;
   show(heard_ || lost_ns_ < 0);
-}
-
-void Channel::note_peaks(std::span<const double> values) {
-  const std::uint64_t looks = looks_.load(std::memory_order_acquire);
-  const bool anew = std::exchange(peaks_since_, looks) != looks;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    double& peak = state_.peaks[i];
-    if (anew || std::isnan(peak) || std::abs(values[i]) > std::abs(peak)) {
-      peak = values[i];
-    }
-  }
 }
 
 /// The time by the instrument's clock. A clock that steps with every sample tells no time.

@@ -26,9 +26,8 @@ struct ChannelState {
   bool live{false};  // data come
   bool lost{false};  // they came no more, or never within the patience
   std::array<double, kMostQuantities> values{};
-  std::array<double, kMostQuantities> peaks{};  // of greatest amount since newest() was called
-  std::int64_t time_ns{0};                      // at which they were measured
-  std::uint64_t beyond{0};                      // samples so far with a value beyond the limit
+  std::int64_t time_ns{0};      // at which they were measured
+  std::uint64_t beyond{0};      // samples so far with a value beyond the limit
   std::size_t beyond_value{0};  // of the last of them: its first quantity beyond the limit
 };
 
@@ -77,7 +76,6 @@ class Channel final : private ChannelInbox {
   void run();
   bool open();
   void read();
-  void note_peaks(std::span<const double> values);
   bool is_useful(std::span<const double> values) const;
   SampleTime clocked(const Measured& sample, std::int64_t received_ns);
   double time_since(std::int64_t time_ns) const;
@@ -90,8 +88,7 @@ class Channel final : private ChannelInbox {
   Now now_;
   Log log_;
   realtime::LatestValue<ChannelState> latest_;
-  ChannelState newest_;                  // servo thread
-  std::atomic<std::uint64_t> looks_{0};  // calls of newest()
+  ChannelState newest_;  // servo thread
 
   // The channel's thread.
   std::unique_ptr<ChannelSource> source_;
@@ -103,8 +100,7 @@ class Channel final : private ChannelInbox {
   bool heard_{false};           // one came in this reading; the session's clock may stand
   std::int64_t lost_ns_{-1};    // since when the channel is lost; -1: it is not
   ChannelState state_;
-  std::uint64_t peaks_since_{0};  // the look from which on the peaks are
-  std::uint64_t no_room_{0};      // samples for which the log had no room
+  std::uint64_t no_room_{0};  // samples for which the log had no room
 
   mutable std::mutex mutex_;  // of what follows
   std::condition_variable changed_;

@@ -64,7 +64,6 @@ ChannelSet::ChannelSet(const std::vector<ChannelOptions>& options, const record:
       part.beyond.push_back(fmt::format("channel {}: {} is beyond the limit of {:g} {}", each.name,
                                         quantity.name, each.limit.value_or(0.0), quantity.unit));
       values_.push_back(kNone);
-      peaks_.push_back(kNone);
     }
     parts_.push_back(std::move(part));
   }
@@ -182,16 +181,13 @@ void ChannelSet::take(std::int64_t time_ns) noexcept {
       lost = state.lost;
       for (std::size_t i = 0; i < count; ++i) {
         values_[part.at + i] = state.live ? state.values[i] : kNone;
-        peaks_[part.at + i] = state.live ? state.peaks[i] : kNone;
       }
       if (std::exchange(part.judged, state.beyond) != state.beyond) {
         beyond = state.beyond_value;
       }
     } else if (!real_) {
-      for (std::size_t i = 0; i < count; ++i) {
-        values_[part.at + i] = peaks_[part.at + i] =
-            simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns));
-      }
+      std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(part.at), count,
+                  simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns)));
     }
     judge(part, lost, beyond);
   }

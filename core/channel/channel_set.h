@@ -55,9 +55,6 @@ class ChannelSet {
   /// The values that take() took: each quantity of each channel, in their order; NaN where there is
   /// none. Servo thread.
   std::span<const double> values() const noexcept { return values_; }
-  /// Likewise, of each quantity the value of greatest amount since take() before, of samples that
-  /// came together. Servo thread.
-  std::span<const double> peaks() const noexcept { return peaks_; }
   Alarm alarm() const noexcept { return alarm_; }
   /// The alarm in a sentence, a text that lasts as long as the set. Servo thread.
   const char* sentence() const noexcept { return sentence_; }
@@ -87,7 +84,7 @@ class ChannelSet {
 
   std::vector<Part> parts_;
   bool real_;
-  std::vector<double> values_, peaks_;
+  std::vector<double> values_;
   Alarm alarm_{Alarm::kNone};
   const char* sentence_{""};
   std::vector<std::string> news_;

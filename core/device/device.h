@@ -63,7 +63,6 @@ struct DeviceReading {
   double pedal{0.0};  // how far an analog pedal is down, 0 to 1
   /// Newest values of the session's channels (channel::place_of); NaN: none. Valid for the tick.
   std::span<const double> channels{};
-  std::span<const double> channel_peaks{};  // since the tick before, likewise
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now
   Eigen::Vector3d angular_velocity{Eigen::Vector3d::Zero()};  // in W [rad/s]
   double opening{0.0};        // between the fingers of the gripper [m]

@@ -50,7 +50,6 @@ void DeviceSet::read(std::size_t arm, const SessionInputs& inputs) noexcept {
     reading.pointer = inputs.pointer;
     reading.pedal = inputs.pedal.value_or(reading.pedal);
     reading.channels = inputs.channels;
-    reading.channel_peaks = inputs.channel_peaks;
   } else {
     const Eigen::Vector3d before = reading.tool.position;
     reading = readings_[tip_of(arm)];

@@ -22,7 +22,6 @@ struct SessionInputs {
   device::WindowPointer pointer{};     // over it
   std::optional<double> pedal;         // how far it is down; nothing: the session has none
   std::span<const double> channels{};  // newest values (channel::ChannelSet)
-  std::span<const double> channel_peaks{};
 };
 
 /// A session drives the tips of its devices, and of those that give torque or a grip force

@@ -72,7 +72,6 @@ SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
   if (channels_ != nullptr) {
     channels_->take(time_ns);
     inputs.channels = channels_->values();
-    inputs.channel_peaks = channels_->peaks();
     const channel::Alarm alarm = channels_->alarm();
     if (alarm == channel::Alarm::kBeyond) {
       devices_.trip(device::Fault::kBeyondLimit, channels_->sentence());

@@ -313,12 +313,10 @@ void TrialPass::take_measure(const IntervalRun& run, const Readings& readings, d
       return measurement.add_place(tool.position);
     case Q::kTime:
       return measurement.add(dt);
-    case Q::kChannel: {
-      const auto values = m.statistic == MeasuredStatistic::kPeak ? readings[0].channel_peaks
-                                                                  : readings[0].channels;
-      return measurement.add(m.channel < values.size() ? values[m.channel]
-                                                       : std::numeric_limits<double>::quiet_NaN());
-    }
+    case Q::kChannel:
+      return measurement.add(m.channel < readings[0].channels.size()
+                                 ? readings[0].channels[m.channel]
+                                 : std::numeric_limits<double>::quiet_NaN());
   }
 }
 

@@ -235,30 +235,6 @@ TEST(ChannelTest, EachOfSamplesThatComeTogetherIsComparedWithTheLimit) {
   EXPECT_EQ(set.alarm(), Alarm::kNone) << "one sample is one alarm";
 }
 
-TEST(ChannelTest, APeakIsOfAllSamplesSinceTheTickBefore) {
-  const auto instrument = play();
-  ChannelSet set(read(kGrip), {}, true);
-  set.start([] { return std::int64_t{0}; }, {});
-  set.begin();
-  const auto wait_for = [&](double angle) {
-    wait_until([&] { return set.seen()[0].state.values[1] == angle; });
-    set.take(0);
-  };
-  instrument->give({{30.0, 1.0}});
-  wait_for(1.0);
-  for (const double force : {2.0, -7.0, std::numeric_limits<double>::quiet_NaN(), 3.0}) {
-    instrument->give({{force, force == 3.0 ? 2.0 : 1.5}});
-  }
-  wait_for(2.0);
-  EXPECT_EQ(set.values()[0], 3.0);
-  EXPECT_EQ(set.peaks()[0], -7.0);
-  set.take(1);
-  EXPECT_EQ(set.peaks()[0], 3.0) << "nothing has come since";
-  instrument->give({{1.0, 3.0}});
-  wait_for(3.0);
-  EXPECT_EQ(set.peaks()[0], 1.0);
-}
-
 TEST(ChannelTest, AnOverloadIsBeyondEveryLimitAndRecordedAsNoValue) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "limit = 5.0\n"), {}, true);
