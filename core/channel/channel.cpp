@@ -21,7 +21,9 @@ constexpr double kSilence = 2.0;     // until a silent one is [s]
 constexpr int kMostSteps = 10;       // of a clock, in samples in turn
 constexpr std::size_t kBlock = 256;  // samples in a block of the log
 constexpr double kKept = 4.0;        // for which the log has room [s]
+constexpr double kUnseen = 0.5;      // that the servo thread may be late [s]
 constexpr std::size_t kLeastBlocks = 16;
+constexpr std::size_t kUnseenBlocks = 4;
 constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
 
 /// A message of an instrument, as a column of the session file can hold it.
@@ -39,8 +41,8 @@ SampleTime stamped(SampleTime time, const ClockOptions& options) {
   return time;
 }
 
-std::size_t blocks_of(double rate) {
-  return std::max(kLeastBlocks, static_cast<std::size_t>(kKept * rate) / kBlock + 1);
+std::size_t blocks_of(double samples, std::size_t least) {
+  return std::max(least, static_cast<std::size_t>(samples) / kBlock + 1);
 }
 
 }  // namespace
@@ -48,7 +50,8 @@ std::size_t blocks_of(double rate) {
 Channel::Channel(ChannelOptions options, Now now, std::uint64_t first)
     : options_(std::move(options)),
       now_(std::move(now)),
-      log_(kBlock, blocks_of(options_.plan.rate)),
+      log_(kBlock, blocks_of(kKept * options_.plan.rate, kLeastBlocks)),
+      unseen_(kBlock, blocks_of(kUnseen * options_.plan.rate, kUnseenBlocks)),
       clock_(options_.plan.clock),
       next_(first) {
   state_.values.fill(std::numeric_limits<double>::quiet_NaN());
@@ -140,6 +143,7 @@ void Channel::take(const Measured& sample) {
   } else if (no_room_ > 0) {
     note(Incident::kDropped, static_cast<double>(std::exchange(no_room_, 0)));
   }
+  unseen_.push(row);
   state_.values = row.values;
   state_.time_ns = row.time_ns;
   show(heard_ || lost_ns_ < 0);

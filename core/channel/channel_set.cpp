@@ -83,13 +83,16 @@ record::TableList ChannelSet::tables() const {
 std::vector<std::string> ChannelSet::start(const Channel::Now& now,
                                            const std::vector<std::uint64_t>& first) {
   std::vector<std::string> notices;
+  std::size_t most_arrived = values_.size();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     part.next = i < first.size() ? first[i] : 0;
     if (real_) {
       part.channel = std::make_unique<Channel>(part.options, now, part.next);
+      most_arrived += part.channel->unseen().capacity() * part.options.plan.quantities.size();
     }
   }
+  arrived_.reserve(most_arrived);
   for (Part& part : parts_) {
     const std::string why = part.channel ? part.channel->wait_until_open() : "";
     if (!why.empty() && part.options.required) {
@@ -172,6 +175,7 @@ std::vector<std::string> ChannelSet::take_news() { return std::exchange(news_, {
 void ChannelSet::take(std::int64_t time_ns) noexcept {
   alarm_ = Alarm::kNone;
   sentence_ = "";
+  arrived_.clear();
   for (Part& part : parts_) {
     const std::size_t count = part.options.plan.quantities.size();
     bool lost = false;
@@ -185,12 +189,27 @@ void ChannelSet::take(std::int64_t time_ns) noexcept {
       if (std::exchange(part.judged, state.beyond) != state.beyond) {
         beyond = state.beyond_value;
       }
+      take_arrived(part, time_ns);
     } else if (!real_) {
       std::fill_n(values_.begin() + static_cast<std::ptrdiff_t>(part.at), count,
                   simulated(part.options.simulated, 1e-9 * static_cast<double>(time_ns)));
+      for (std::size_t place = part.at; place < part.at + count; ++place) {
+        arrived_.push_back({place, values_[place], 0.0});
+      }
     }
     judge(part, lost, beyond);
   }
+}
+
+void ChannelSet::take_arrived(Part& part, std::int64_t time_ns) noexcept {
+  part.channel->unseen().flush([&](std::span<const ChannelRow> rows) {
+    for (const ChannelRow& row : rows) {
+      const double age = 1e-9 * static_cast<double>(time_ns - row.time_ns);
+      for (std::size_t i = 0; i < part.options.plan.quantities.size(); ++i) {
+        arrived_.push_back({part.at + i, row.values[i], age});
+      }
+    }
+  });
 }
 
 /// A value beyond its limit weighs more than a channel that is lost.

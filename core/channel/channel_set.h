@@ -11,6 +11,7 @@
 
 #include "core/channel/channel.h"
 #include "core/channel/channel_options.h"
+#include "core/device/device.h"
 #include "core/record/rows/rows.h"
 
 namespace haptrial::channel {
@@ -50,11 +51,15 @@ class ChannelSet {
   /// Losses and returns since the last call, in sentences. Session's thread.
   std::vector<std::string> take_news();
 
-  /// Takes the newest values. @param time_ns  of the tick. Servo thread: wait-free.
+  /// Takes the newest values. @param time_ns  of the tick, since the session's first. Servo thread:
+  /// wait-free.
   void take(std::int64_t time_ns) noexcept;
   /// The values that take() took: each quantity of each channel, in their order; NaN where there is
   /// none. Servo thread.
   std::span<const double> values() const noexcept { return values_; }
+  /// Every value that has come since the take() before the last, in the order of its channel. Servo
+  /// thread.
+  std::span<const device::ArrivedValue> arrived() const noexcept { return arrived_; }
   Alarm alarm() const noexcept { return alarm_; }
   /// The alarm in a sentence, a text that lasts as long as the set. Servo thread.
   const char* sentence() const noexcept { return sentence_; }
@@ -80,11 +85,13 @@ class ChannelSet {
   };
   void simulate(Part& part, std::int64_t now_ns,
                 const std::function<void(const record::Rows&)>& put);
+  void take_arrived(Part& part, std::int64_t time_ns) noexcept;
   void judge(const Part& part, bool lost, std::optional<std::size_t> beyond) noexcept;
 
   std::vector<Part> parts_;
   bool real_;
   std::vector<double> values_;
+  std::vector<device::ArrivedValue> arrived_;  // never grows after start()
   Alarm alarm_{Alarm::kNone};
   const char* sentence_{""};
   std::vector<std::string> news_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -14,6 +15,13 @@ namespace haptrial::device {
 /// The parts of a handle that the loop reads and drives, each by the same laws and under the same
 /// watch: its tip, its rotation, and the opening of its gripper.
 enum class Part : std::uint8_t { kTip, kRotation, kGrip };
+
+/// A value of a channel that has come since the tick before.
+struct ArrivedValue {
+  std::size_t place{0};  // of its quantity among the newest values
+  double value{0.0};
+  double age{0.0};  // since it was measured [s]
+};
 
 /// Abilities of a device, for the session file and for checks before a session.
 struct DeviceInfo {
@@ -63,6 +71,7 @@ struct DeviceReading {
   double pedal{0.0};  // how far an analog pedal is down, 0 to 1
   /// Newest values of the session's channels (channel::place_of); NaN: none. Valid for the tick.
   std::span<const double> channels{};
+  std::span<const ArrivedValue> arrived{};  // values of channels; also valid for the tick
   control::GainShares shares{};  // of the gains of all laws, which the handle carries now
   Eigen::Vector3d angular_velocity{Eigen::Vector3d::Zero()};  // in W [rad/s]
   double opening{0.0};        // between the fingers of the gripper [m]

@@ -13,11 +13,24 @@ constexpr double kAfter = 0.5;     // [s]
 constexpr double kCompared = 0.1;  // of the sound at most [s]
 constexpr double kSilence = 0.02;  // before it, which is part of what is compared [s]
 constexpr double kLeastFit = 0.25;
+constexpr double kQuiet = 0.05;     // before the sound, which tells the noise [s]
+constexpr double kOut = 5.0;        // times the noise, above which a sample stands out
+constexpr double kByNoise = 2.5;    // times the noise, by which one may be wrong
+constexpr double kLeastOut = 1e-3;  // of the sound, where there is no noise
 
 double median_of(std::vector<float> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+/// The standard deviation of noise about `rest`, whatever stands out of it.
+double noise_of(std::span<const float> samples, double rest) {
+  std::vector<float> amounts;
+  for (const float sample : samples) {
+    amounts.push_back(static_cast<float>(std::abs(sample - rest)));
+  }
+  return 1.4826 * median_of(amounts);
 }
 
 /// The first samples of pulses.
@@ -77,7 +90,11 @@ class Search {
         sound_(sound.first(std::min(sound.size(), static_cast<std::size_t>(kCompared * rate)))),
         rate_(rate),
         energies_(energies_of(recorded)),
-        own_(energies_of(sound_).back()) {}
+        own_(energies_of(sound_).back()) {
+    for (const float sample : sound_) {
+      largest_ = std::max(largest_, std::abs(static_cast<double>(sample)));
+    }
+  }
 
   HeardOnset after(long pulse) const {
     HeardOnset onset{static_cast<double>(pulse) / rate_};
@@ -91,11 +108,47 @@ class Search {
         onset.heard = true;
       }
     }
+    if (onset.heard) {
+      look_out_of_noise(onset, first, pulse);
+    }
     return onset;
   }
 
  private:
   long samples(double seconds) const { return std::lround(seconds * rate_); }
+  /// The first of the samples whose amount, from `rest`, is above a threshold; their number if
+  /// none.
+  static long first_above(std::span<const float> samples, double rest, double threshold) {
+    return std::ranges::find_if(samples,
+                                [&](float sample) { return std::abs(sample - rest) > threshold; }) -
+           samples.begin();
+  }
+
+  /// @param first  sample from which the sound is looked for
+  void look_out_of_noise(HeardOnset& onset, long first, long pulse) const {
+    const long quiet = std::max(0L, first - samples(kQuiet));
+    if (quiet == first) {
+      onset.left = onset.latency;
+      return;
+    }
+    const auto before =
+        recorded_.subspan(static_cast<std::size_t>(quiet), static_cast<std::size_t>(first - quiet));
+    const double rest = median_of({before.begin(), before.end()});
+    const double noise = noise_of(before, rest);
+    const long at = pulse + std::lround(onset.latency * rate_);
+    const double gain =
+        product_of(sound_, recorded_.subspan(static_cast<std::size_t>(at), sound_.size())) / own_;
+    const double least = kLeastOut * std::abs(gain) * largest_;
+    const auto would = [&](double times) {
+      return at + first_above(sound_, 0.0, std::max(times * noise, least) / std::abs(gain));
+    };
+    const long left = first + first_above(recorded_.subspan(static_cast<std::size_t>(first)), rest,
+                                          std::max(kOut * noise, least));
+    const long next = std::clamp(left, would(kOut - kByNoise), would(kOut + kByNoise));
+    onset.left = static_cast<double>(left - pulse) / rate_;
+    onset.off = static_cast<double>(left - next) / rate_;
+  }
+
   double fit_at(long at) const {
     const auto from = static_cast<std::size_t>(at);
     const auto silence = static_cast<std::size_t>(std::max(0L, at - samples(kSilence)));
@@ -107,7 +160,8 @@ class Search {
   std::span<const float> recorded_, sound_;
   double rate_;
   std::vector<double> energies_;
-  double own_;  // energy of the sound
+  double own_;           // energy of the sound
+  double largest_{0.0};  // amount of its samples
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
 #include <utility>
 
@@ -86,16 +87,19 @@ void MarkerThread::queue_codes(std::vector<TimedOnset>& onsets) {
   waiting_.store(queue_.size(), std::memory_order_release);
 }
 
+/// A line that is full takes the zero later, or the next code in its place; one that has failed has
+/// nothing on it.
 void MarkerThread::step_line() {
   const auto pulse =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(options_.pulse));
   while ((high_ || !queue_.empty()) && Clock::now() >= due_) {
-    if (high_) {
-      outputs_.serial->write(0);
-      high_ = false;
+    if (high_ && !(full_ && !queue_.empty())) {
+      full_ = !outputs_.serial->write(0) && outputs_.serial->error() == EAGAIN;
+      high_ = full_ && !stop_.load(std::memory_order_relaxed);
       due_ = Clock::now() + pulse;
       continue;
     }
+    full_ = false;
     write_code(queue_.front());
     queue_.pop_front();
     waiting_.store(queue_.size(), std::memory_order_release);

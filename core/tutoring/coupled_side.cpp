@@ -55,7 +55,8 @@ void CoupledSide::look_at_partner(std::int64_t now_ns, double dt) noexcept {
   const TickMessage& message = even != nullptr ? *even : newest_;
   const bool is_new = message.sequence != used_.sequence;
   const double later = 1e-9 * static_cast<double>(message.sent_ns - used_.sent_ns);  // [s]
-  const bool skips = is_new && used_.sequence > 0 && later > 1.5 * dt && !p_.sparse;
+  const bool skips = used_.sequence > 0 && (p_.sparse ? message.sequence > used_.sequence + 1
+                                                      : is_new && later > 1.5 * dt);
   used_for_ = is_new ? 0.0 : used_for_ + dt;
   used_ = message;
   const Partner sent{{message.position, message.velocity}, message.force};

@@ -50,6 +50,7 @@ void DeviceSet::read(std::size_t arm, const SessionInputs& inputs) noexcept {
     reading.pointer = inputs.pointer;
     reading.pedal = inputs.pedal.value_or(reading.pedal);
     reading.channels = inputs.channels;
+    reading.arrived = inputs.arrived;
   } else {
     const Eigen::Vector3d before = reading.tool.position;
     reading = readings_[tip_of(arm)];

@@ -22,6 +22,7 @@ struct SessionInputs {
   device::WindowPointer pointer{};     // over it
   std::optional<double> pedal;         // how far it is down; nothing: the session has none
   std::span<const double> channels{};  // newest values (channel::ChannelSet)
+  std::span<const device::ArrivedValue> arrived{};  // all that have come since the tick before
 };
 
 /// A session drives the tips of its devices, and of those that give torque or a grip force

@@ -70,8 +70,9 @@ SessionInputs SessionTask::inputs(std::int64_t time_ns) noexcept {
     inputs.pedal = pedal_->depth();
   }
   if (channels_ != nullptr) {
-    channels_->take(time_ns);
+    channels_->take(origin_.time_ns + time_ns);
     inputs.channels = channels_->values();
+    inputs.arrived = channels_->arrived();
     const channel::Alarm alarm = channels_->alarm();
     if (alarm == channel::Alarm::kBeyond) {
       devices_.trip(device::Fault::kBeyondLimit, channels_->sentence());

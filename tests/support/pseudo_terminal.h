@@ -69,6 +69,9 @@ class PseudoTerminal {
       text.remove_prefix(static_cast<std::size_t>(count));
     }
   }
+  /// The device takes no bytes for a while, so that the line is full.
+  void hold() const { tcflow(slave_, TCOOFF); }
+  void go_on() const { tcflow(slave_, TCOON); }
   /// The device is unplugged.
   void unplug() {
     stop_.store(true);

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "core/base/error.h"
@@ -53,12 +55,37 @@ std::vector<sound::Recording> channels_of(const std::string& file) {
   return channels;
 }
 
-void print(std::vector<double> latencies) {
-  std::ranges::sort(latencies);
-  const std::size_t n = latencies.size();
-  const double median = 0.5 * (latencies[(n - 1) / 2] + latencies[n / 2]);
-  fmt::print("latency     median {:.2f} ms, {:.2f} to {:.2f} ms ({} onsets)\n", 1e3 * median,
-             1e3 * latencies.front(), 1e3 * latencies.back(), n);
+double median_of_sorted(const std::vector<double>& values) {
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+std::vector<double> sorted(const std::vector<sound::HeardOnset>& onsets,
+                           double sound::HeardOnset::*part) {
+  std::vector<double> values;
+  for (const sound::HeardOnset& onset : onsets) {
+    if (onset.heard) {
+      values.push_back(onset.*part);
+    }
+  }
+  std::ranges::sort(values);
+  return values;
+}
+
+void print(const std::vector<sound::HeardOnset>& onsets) {
+  constexpr double kOff = 4e-4;  // that says something [s]
+  const std::vector<double> latencies = sorted(onsets, &sound::HeardOnset::latency);
+  fmt::print("latency     median {:.2f} ms, {:.2f} to {:.2f} ms ({} onsets)\n",
+             1e3 * median_of_sorted(latencies), 1e3 * latencies.front(), 1e3 * latencies.back(),
+             latencies.size());
+  const double off = median_of_sorted(sorted(onsets, &sound::HeardOnset::off));
+  if (std::abs(off) > kOff) {
+    fmt::print(
+        "warning     the recording is not this sound alone: it leaves its noise {:.2f} ms after "
+        "the pulse (median), {:.2f} ms {} than such a sound would. The latency above is wrong; an "
+        "actuator that rings up has begun by then at the latest\n",
+        1e3 * median_of_sorted(sorted(onsets, &sound::HeardOnset::left)), 1e3 * std::abs(off),
+        off < 0.0 ? "earlier" : "later");
+  }
 }
 
 }  // namespace
@@ -74,25 +101,20 @@ int measure_loopback(const DeviceTestOptions& options) {
                     "markers' output to it",
                     options.loopback));
   }
-  std::vector<double> latencies;
-  for (const sound::HeardOnset& onset : onsets) {
-    if (onset.heard) {
-      latencies.push_back(onset.latency);
-    }
-  }
-  if (latencies.empty()) {
+  const auto heard = std::ranges::count_if(onsets, &sound::HeardOnset::heard);
+  if (heard == 0) {
     throw InputError(
         fmt::format("{}: the second channel has sounds.{} within 0.5 s of none of the {} pulses; "
                     "lead the card's output to it",
                     options.loopback, options.name, onsets.size()));
   }
-  print(latencies);
+  print(onsets);
   for (const sound::HeardOnset& onset : onsets) {
     if (!onset.heard) {
       fmt::print("no sound    after the pulse at {:.3f} s\n", onset.pulse);
     }
   }
-  return latencies.size() == onsets.size() ? 0 : 1;
+  return heard == std::ssize(onsets) ? 0 : 1;
 }
 
 }  // namespace haptrial::experiments

@@ -15,6 +15,22 @@ void RunningStatistics::add(double value) noexcept {
   sum_ += value;
 }
 
+/// Chan, Golub and LeVeque 1979: sums of squares of two samples give that of both.
+void RunningStatistics::add(const RunningStatistics& more) noexcept {
+  if (more.count_ < 2) {
+    return more.empty() ? void() : add(more.end_);
+  }
+  const auto before = static_cast<double>(count_);
+  const auto added = static_cast<double>(more.count_);
+  const double between = more.mean_ - mean_;
+  peak_ = std::abs(more.peak_) > std::abs(peak_) || empty() ? more.peak_ : peak_;
+  count_ += more.count_;
+  mean_ += between * added / (before + added);
+  squares_ += more.squares_ + between * between * before * added / (before + added);
+  end_ = more.end_;
+  sum_ += more.sum_;
+}
+
 double RunningStatistics::value(MeasuredStatistic statistic) const noexcept {
   if (empty()) {
     return std::numeric_limits<double>::quiet_NaN();
@@ -34,18 +50,37 @@ Measurement::Measurement(const Measure& measure, double rate) : measure_(measure
 void Measurement::begin() noexcept {
   all_ = {};
   taken_ = 0;
+  newest_ = std::numeric_limits<double>::quiet_NaN();
 }
 
 void Measurement::add(double value) noexcept {
   if (!std::isfinite(value)) {
     return;
   }
+  RunningStatistics tick;
+  tick.add(value);
+  add_tick(tick);
+}
+
+void Measurement::add_tick(const RunningStatistics& tick) noexcept {
   if (window_.empty()) {
-    all_.add(value);
+    all_.add(tick);
   } else {
-    window_[taken_ % window_.size()] = value;
+    window_[taken_ % window_.size()] = tick;
   }
   ++taken_;
+}
+
+void Measurement::add_samples(std::span<const device::ArrivedValue> arrived, std::size_t place,
+                              double newest, double in_stage) noexcept {
+  newest_ = newest;
+  RunningStatistics tick;
+  for (const device::ArrivedValue& sample : arrived) {
+    if (sample.place == place && sample.age <= in_stage && std::isfinite(sample.value)) {
+      tick.add(sample.value);
+    }
+  }
+  add_tick(tick);
 }
 
 void Measurement::add_place(const Eigen::Vector3d& place) noexcept {
@@ -54,6 +89,11 @@ void Measurement::add_place(const Eigen::Vector3d& place) noexcept {
 }
 
 double Measurement::value_of(const RunningStatistics& statistics) const noexcept {
+  if (statistics.empty() && std::isfinite(newest_)) {
+    RunningStatistics newest;
+    newest.add(newest_);
+    return value_of(newest);
+  }
   const double value = measure_.is_summed() && !statistics.empty()
                            ? statistics.sum()
                            : statistics.value(measure_.statistic);

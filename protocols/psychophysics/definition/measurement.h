@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "core/device/device.h"
 #include "protocols/psychophysics/definition/measure.h"
 
 namespace haptrial::protocols {
@@ -15,6 +17,7 @@ namespace haptrial::protocols {
 class RunningStatistics {
  public:
   void add(double value) noexcept;
+  void add(const RunningStatistics& more) noexcept;
   /// NaN without a number. @param statistic  of those that are not summed
   double value(MeasuredStatistic statistic) const noexcept;
   double sum() const noexcept { return sum_; }
@@ -37,6 +40,11 @@ class Measurement {
   void begin() noexcept;
   /// Takes the quantity of a tick, in SI; one that is not finite is left out.
   void add(double value) noexcept;
+  /// Takes what a channel gave on a tick: each sample of `place` that was measured in the stage.
+  /// The newest value stands for the stage while none was. @param in_stage  time of the tick in it
+  /// [s]
+  void add_samples(std::span<const device::ArrivedValue> arrived, std::size_t place, double newest,
+                   double in_stage) noexcept;
   /// Takes the place of a tick, from which the way since the tick before follows [m].
   void add_place(const Eigen::Vector3d& place) noexcept;
   /// The number of the ticks so far, in Measure::unit; NaN if there are none.
@@ -44,11 +52,13 @@ class Measurement {
 
  private:
   double value_of(const RunningStatistics& statistics) const noexcept;
+  void add_tick(const RunningStatistics& tick) noexcept;
 
   Measure measure_;
   RunningStatistics all_;
-  std::vector<double> window_;  // ring of the last ticks; empty: all ticks count
-  std::size_t taken_{0};        // ticks of the stage
+  std::vector<RunningStatistics> window_;  // ring of the last ticks; empty: all ticks count
+  std::size_t taken_{0};                   // ticks of the stage
+  double newest_{std::numeric_limits<double>::quiet_NaN()};  // of a channel, on the last tick
   Eigen::Vector3d before_{Eigen::Vector3d::Zero()};
 };
 

@@ -169,14 +169,20 @@ bool StageMachine::all_touch(std::uint64_t fields, Scenes scenes) const noexcept
   return true;
 }
 
-/// Whether a channel's value is as asked; one that is not there never is.
+/// Whether a channel's value is as asked; one that is not there never is. A value that need not
+/// hold may be any of those that have come since the tick before.
 bool StageMachine::measures(const Until& until, Readings readings) const noexcept {
   if (!until.channel) {
     return true;
   }
   const std::span<const double> values = readings.front().channels;
-  const bool there = *until.channel < values.size();
-  return there && values[*until.channel] > until.above && values[*until.channel] < until.below;
+  const auto fits = [&](double value) { return value > until.above && value < until.below; };
+  if (*until.channel < values.size() && fits(values[*until.channel])) {
+    return true;
+  }
+  return until.hold <= 0.0 && std::ranges::any_of(readings.front().arrived, [&](const auto& each) {
+           return each.place == *until.channel && each.age <= in_stage_ && fits(each.value);
+         });
 }
 
 bool StageMachine::holds(const Until& until, Readings readings, Scenes scenes,

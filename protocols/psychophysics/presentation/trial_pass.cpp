@@ -314,9 +314,11 @@ void TrialPass::take_measure(const IntervalRun& run, const Readings& readings, d
     case Q::kTime:
       return measurement.add(dt);
     case Q::kChannel:
-      return measurement.add(m.channel < readings[0].channels.size()
-                                 ? readings[0].channels[m.channel]
-                                 : std::numeric_limits<double>::quiet_NaN());
+      return measurement.add_samples(readings[0].arrived, m.channel,
+                                     m.channel < readings[0].channels.size()
+                                         ? readings[0].channels[m.channel]
+                                         : std::numeric_limits<double>::quiet_NaN(),
+                                     run.machine.time_in_stage());
   }
 }
 

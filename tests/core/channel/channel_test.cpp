@@ -235,6 +235,31 @@ TEST(ChannelTest, EachOfSamplesThatComeTogetherIsComparedWithTheLimit) {
   EXPECT_EQ(set.alarm(), Alarm::kNone) << "one sample is one alarm";
 }
 
+TEST(ChannelTest, EverySampleReachesATickOnce) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip), {}, true);
+  set.start([] { return std::int64_t{5'000'000}; }, {});
+  set.begin();
+  for (const double force : {1.0, 30.0, 0.5}) {
+    instrument->give({{force, 2.0}});
+  }
+  std::vector<device::ArrivedValue> arrived;
+  wait_until([&] {
+    const test::AllocationGuard guard;
+    set.take(8'000'000);
+    EXPECT_EQ(guard.count(), 0u);
+    arrived.insert(arrived.end(), set.arrived().begin(), set.arrived().end());
+    return arrived.size() >= 6;
+  });
+  ASSERT_EQ(arrived.size(), 6u);
+  EXPECT_EQ(arrived[2].value, 30.0);
+  EXPECT_EQ(arrived[2].place, 0u);
+  EXPECT_EQ(arrived[3].place, 1u);
+  EXPECT_GT(arrived[2].age, 0.0029);
+  set.take(9'000'000);
+  EXPECT_THAT(set.arrived(), IsEmpty());
+}
+
 TEST(ChannelTest, AnOverloadIsBeyondEveryLimitAndRecordedAsNoValue) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "limit = 5.0\n"), {}, true);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "core/base/random.h"
 #include "core/sound/card_player.h"
@@ -71,8 +72,45 @@ TEST(OnsetLatencyTest, PlantedLatenciesAreFoundWithinATenthOfAMillisecond) {
         EXPECT_TRUE(found[i].heard) << cue.duration;
         EXPECT_NEAR(found[i].pulse, 0.25 + static_cast<double>(i), 1e-4) << cue.duration;
         EXPECT_NEAR(found[i].latency, latency, 1e-4) << cue.duration;
+        EXPECT_NEAR(found[i].off, 0.0, 3e-3) << cue.duration;
       }
     }
+  }
+}
+
+/// The acceleration of an actuator that is driven by `force`: a mass on a spring.
+std::vector<float> moved(const std::vector<float>& force, double frequency, double damping_ratio) {
+  const double omega = 2.0 * std::numbers::pi * frequency;
+  double place = 0.0;
+  double speed = 0.0;
+  std::vector<float> accelerations;
+  for (const float push : force) {
+    const double a = push - 2.0 * damping_ratio * omega * speed - omega * omega * place;
+    speed += a / kRate;
+    place += speed / kRate;
+    accelerations.push_back(static_cast<float>(a));
+  }
+  return accelerations;
+}
+
+TEST(OnsetLatencyTest, AnActuatorThatRingsUpLeavesTheNoiseBeforeThePlaceThatFitsBest) {
+  constexpr double kLatency = 0.0123;
+  const std::vector<float> tone = rendered(cue_of(Cue::Kind::kTone, 250.0, 0.2, 0.005), 1);
+  for (const double damping : {0.05, 0.1}) {
+    const Loopback made = loopback(moved(tone, 250.0, damping), kLatency, 0.003);
+    const auto found = onset_latencies(made.pulses, made.sound, tone, kRate);
+    ASSERT_THAT(found, SizeIs(5));
+    for (const HeardOnset& onset : found) {
+      EXPECT_GT(onset.latency, kLatency + 3e-3) << "it fits best where it has rung up";
+      EXPECT_LT(onset.off, -2e-3);
+      EXPECT_GT(onset.left, kLatency);
+      EXPECT_LT(onset.left, kLatency + 4e-3);
+    }
+  }
+  const Loopback alone = loopback(tone, kLatency, 0.003);
+  for (const HeardOnset& onset : onset_latencies(alone.pulses, alone.sound, tone, kRate)) {
+    EXPECT_NEAR(onset.off, 0.0, 2e-4);
+    EXPECT_LT(onset.left, kLatency + 1e-3);
   }
 }
 

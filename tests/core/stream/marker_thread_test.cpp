@@ -187,6 +187,20 @@ TEST_F(MarkerThreadTest, ALineThatComesBackIsOpenedAgain) {
   EXPECT_EQ(line.reopened(), 1);
 }
 
+TEST_F(MarkerThreadTest, AZeroThatTheLineDoesNotTakeFollowsWhenItDoes) {
+  MarkerThread& thread = open(0.5);
+  put(onset(MarkerOf::kStage, 0, 1));
+  ASSERT_THAT(heard(1), ElementsAre(21));
+  terminal_.hold();
+  std::this_thread::sleep_for(milliseconds(700));
+  EXPECT_THAT(terminal_.bytes(), ElementsAre(21));
+  put(onset(MarkerOf::kStage, 1, 2));
+  ASSERT_TRUE(thread.wait_until_sent(kForever));
+  EXPECT_EQ(thread.lost(), 1u) << "no code waits for a line that is full";
+  terminal_.go_on();
+  EXPECT_THAT(heard(2), ElementsAre(21, 0));
+}
+
 TEST_F(MarkerThreadTest, NoCodeStaysOnTheLineAtTheEnd) {
   open(0.05);
   put(onset(MarkerOf::kStage, 0, 1));

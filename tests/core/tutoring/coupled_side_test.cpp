@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "core/tutoring/simulated_channel.h"
 #include "tests/support/allocation_guard.h"
@@ -233,6 +234,60 @@ TEST(CoupledSideTest, ALostLinkLetsGoOver50MsAfterTheDeadlineAndComesBackByARamp
     last = pair.force_b.norm();
   }
   EXPECT_GT(last, 0.1);
+}
+
+/// The partner's force is 12 N in its messages up to `last`, and 1 N in those after it.
+TickMessage pressed(std::uint64_t number, std::uint64_t last) {
+  TickMessage m;
+  m.sequence = number;
+  m.sent_ns = 1'000'000 * static_cast<std::int64_t>(number);
+  m.force.x() = number <= last ? 12.0 : 1.0;
+  return m;
+}
+
+TEST(CoupledSideTest, MessagesThatAreSkippedMakeNoStepOfTheForce) {
+  constexpr std::uint64_t kLast = 1000;
+  for (const std::uint64_t skipped : {1u, 10u, 40u, 90u}) {
+    SideParameters p = stiff(Passivity::kNone);
+    p.gains = {0.0, 0.0, 1.0};  // the partner's world alone
+    CoupledSide side(p);
+    double force = 0.0;
+    const auto tick = [&](std::uint64_t number, bool comes) {
+      const auto now = 1'000'000 * static_cast<std::int64_t>(number);
+      if (comes) {
+        side.hear(pressed(number, kLast), now);
+      }
+      const double before = std::exchange(force, side.step({}, now, kDt).force.x());
+      return std::abs(force - before);
+    };
+    for (std::uint64_t number = 1; number <= kLast; ++number) {
+      tick(number, true);
+    }
+    ASSERT_EQ(force, 12.0);
+    std::uint64_t number = kLast + 1;
+    for (; number <= kLast + skipped; ++number) {
+      EXPECT_EQ(tick(number, false), 0.0) << "it is held";
+    }
+    const auto bridge = static_cast<double>(std::min<std::uint64_t>(skipped + 1, 50));
+    for (int i = 0; i < 50; ++i, ++number) {
+      EXPECT_LT(tick(number, true), 11.0 / bridge + 1e-9) << skipped << " skipped, tick " << i;
+    }
+    EXPECT_NEAR(force, 1.0, 1e-9);
+  }
+}
+
+TEST(CoupledSideTest, AStepThatThePartnerFeltIsPlayedAsItWasHoweverLateItCame) {
+  SideParameters p = stiff(Passivity::kNone);
+  p.gains = {0.0, 0.0, 1.0};
+  CoupledSide side(p);
+  double force = 0.0;
+  for (std::uint64_t number = 1; number <= 1001; ++number) {
+    const std::uint64_t late = number <= 1000 ? 0 : 30;
+    const auto now = 1'000'000 * static_cast<std::int64_t>(number + late);
+    side.hear(pressed(number, 1000), now);
+    force = side.step({}, now, kDt).force.x();
+  }
+  EXPECT_EQ(force, 1.0);
 }
 
 TEST(CoupledSideTest, AfterTicksThatDidNotComeTheForceCatchesUpWithoutAStep) {

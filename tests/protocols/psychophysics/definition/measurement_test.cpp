@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "protocols/psychophysics/definition/every_value.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
@@ -68,6 +69,44 @@ TEST(MeasurementTest, WithoutATickThereIsNoValue) {
       taken.add(std::nan(""));
       EXPECT_TRUE(std::isnan(taken.value()));
     }
+  }
+}
+
+/// Samples 0, 1, 2, … 99 of place 1, ten at a time, on every tenth tick; the first five are of the
+/// stage before.
+TEST(MeasurementTest, EverySampleOfAChannelThatWasMeasuredInTheStageCounts) {
+  const auto of_bundles = [](S statistic, double last) {
+    Measurement taken(measure_of(Q::kChannel, statistic, last), kRate);
+    taken.begin();
+    for (int tick = 0; tick < 96; ++tick) {
+      std::vector<device::ArrivedValue> arrived;
+      for (int i = tick + 5 - 10; tick % 10 == 5 && i < tick + 5; ++i) {
+        arrived.push_back({0, 1e3, 0.0});
+        arrived.push_back({1, static_cast<double>(i), 1e-3 * (tick + 5 - i)});
+      }
+      taken.add_samples(arrived, 1, 7.0, 1e-3 * tick);
+    }
+    return taken.value();
+  };
+  // 5 … 99 are 95 numbers: their mean is 52, their variance (95² - 1) / 12.
+  EXPECT_NEAR(of_bundles(S::kMean, 0.0), 52.0, 1e-12);
+  EXPECT_NEAR(of_bundles(S::kDeviation, 0.0), std::sqrt((95.0 * 95.0 - 1.0) / 12.0), 1e-12);
+  EXPECT_EQ(of_bundles(S::kPeak, 0.0), 99.0);
+  EXPECT_EQ(of_bundles(S::kEnd, 0.0), 99.0);
+  EXPECT_NEAR(of_bundles(S::kMean, 0.02), 89.5, 1e-12) << "80 … 99";
+  EXPECT_NEAR(of_bundles(S::kDeviation, 0.02), std::sqrt((20.0 * 20.0 - 1.0) / 12.0), 1e-12);
+}
+
+TEST(MeasurementTest, AStageWithoutASampleHasTheNewestValue) {
+  for (const double last : {0.0, 0.1}) {
+    Measurement taken(measure_of(Q::kChannel, S::kPeak, last), kRate);
+    taken.begin();
+    const device::ArrivedValue before{0, 9.0, 0.5};
+    taken.add_samples({&before, 1}, 0, 2.5, 0.0);
+    EXPECT_EQ(taken.value(), 2.5);
+    taken.begin();
+    taken.add_samples({}, 0, std::nan(""), 0.0);
+    EXPECT_TRUE(std::isnan(taken.value())) << "the channel is lost";
   }
 }
 

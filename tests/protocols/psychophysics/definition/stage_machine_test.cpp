@@ -93,6 +93,30 @@ TEST_F(StageMachineTest, AMeasuredValueEndsAStageAndOneThatIsMissingNever) {
   EXPECT_EQ(m.times()[0].how, StageEnd::kLate);
 }
 
+TEST_F(StageMachineTest, AnySampleOfTheStageEndsItUnlessItsValueHasToHold) {
+  Stage stage;
+  stage.until.channel = 0;
+  stage.until.above = 2.0;
+  stage.timeout = 0.5;
+  const std::array<double, 1> values{0.0};
+  std::array<device::ArrivedValue, 3> together{{{0, 0.0, 0.005}, {0, 2.5, 0.004}, {0, 0.0, 0.003}}};
+  const auto squeezed = [&](double t) {
+    device::DeviceReading reading = at_height(1.0);
+    reading.channels = values;
+    if (std::abs(t - 0.3) < 1e-9 || t < 1e-9) {  // those of the first tick are of a stage before
+      reading.arrived = together;
+    }
+    return reading;
+  };
+  StageMachine any = machine({stage});
+  EXPECT_EQ(run(any, squeezed), 301);
+  EXPECT_EQ(any.times()[0].how, StageEnd::kReached);
+  stage.until.hold = 0.002;
+  StageMachine held = machine({stage});
+  run(held, squeezed);
+  EXPECT_EQ(held.times()[0].how, StageEnd::kLate);
+}
+
 TEST_F(StageMachineTest, WhatHasToHoldHoldsWithoutABreak) {
   Stage stage;
   stage.until.inside = 0b1;
