@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "analysis/psychometric/fit/adaptive_posterior.h"
 
@@ -40,21 +41,47 @@ std::string no_interval(std::span<const TrialBlock> blocks, const LikelihoodOpti
   return {};
 }
 
-/// The cut of an F test over that of chi-square, whose scale is the deviance over its degrees of
-/// freedom.
-double scaled_cut(std::span<const TrialBlock> blocks, const LikelihoodOptions& options) {
+/// How far the answers lie from the likeliest function.
+struct Scatter {
+  double deviance{0.0};
+  double freedom{0.0};  // degrees of the deviance
+};
+
+Scatter scatter_of(std::span<const TrialBlock> blocks, const LikelihoodOptions& options) {
   const LikelihoodFitter fitter(options, blocks);
   const LikelihoodFit fit = likelihood_fit(blocks, options);
-  const double deviance = deviance_of(fitter.function(fit.parameters), blocks).deviance;
-  const double left = static_cast<double>(blocks.size()) - fitter.free_parameters();
-  const double freedom = std::max(1.0, left);
-  return std::max(1.0, deviance / freedom * gsl_cdf_fdist_Pinv(kLevel, 1.0, freedom) /
+  return {deviance_of(fitter.function(fit.parameters), blocks).deviance,
+          static_cast<double>(blocks.size()) - fitter.free_parameters()};
+}
+
+/// The cut of an F test over that of chi-square, whose scale is the deviance over its degrees of
+/// freedom.
+double scaled_cut(const Scatter& scatter) {
+  const double freedom = std::max(1.0, scatter.freedom);
+  return std::max(1.0, scatter.deviance / freedom * gsl_cdf_fdist_Pinv(kLevel, 1.0, freedom) /
                            gsl_cdf_chisq_Pinv(kLevel, 1.0));
 }
 
+/// The p of the deviance by chi-square; NaN if levels are too few or have too few trials for it.
+double chi_square_p(const Scatter& scatter, std::span<const TrialBlock> blocks) {
+  constexpr double kFewTrials = 5.0;  // at a level
+  double trials = 0.0;
+  for (const TrialBlock& block : blocks) {
+    trials += block.total;
+  }
+  return scatter.freedom < 1.0 || trials < kFewTrials * static_cast<double>(blocks.size())
+             ? std::numeric_limits<double>::quiet_NaN()
+             : gsl_cdf_chisq_Q(scatter.deviance, scatter.freedom);
+}
+
+/// @param stated  with `deviance_p`, which is NaN if nobody drew samples
 void take_profile(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
-                  bool scattered, StatedFit& stated) {
-  const double cut = scattered ? scaled_cut(blocks, options) : 1.0;
+                  StatedFit& stated) {
+  const Scatter scatter = scatter_of(blocks, options);
+  if (std::isnan(stated.deviance_p)) {
+    stated.deviance_p = chi_square_p(scatter, blocks);
+  }
+  const double cut = stated.deviance_p < kUnusualScatter ? scaled_cut(scatter) : 1.0;
   stated.widening = std::sqrt(cut);
   const double level = gsl_cdf_chisq_P(cut * gsl_cdf_chisq_Pinv(kLevel, 1.0), 1.0);
   const ProfiledFit fit = profiled_fit(blocks, options, std::min(level, kMostLevel));
@@ -88,10 +115,11 @@ void take_posterior(std::span<const TrialBlock> blocks, const LikelihoodOptions&
 StatedFit stated_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
                      bool adaptive, double deviance_p) {
   StatedFit stated;
+  stated.deviance_p = deviance_p;
   if (adaptive) {
     take_posterior(blocks, options, stated);
   } else {
-    take_profile(blocks, options, deviance_p < kUnusualScatter, stated);
+    take_profile(blocks, options, stated);
   }
   const FittedParameters& likeliest = stated.likeliest.parameters;
   stated.lapse_at_bound = at_bound(options.lapse, likeliest.lapse);

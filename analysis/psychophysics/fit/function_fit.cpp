@@ -239,8 +239,9 @@ void fit_stated(FunctionFit& result, const LikelihoodOptions& options, const Tri
   const BootstrappedFit fit = bootstrapped ? bootstrap_fit(result.blocks, options, asked, how)
                                            : bare_fit(result.blocks, options, asked);
   result.deviance = fit.deviance.deviance;
-  result.deviance_p = bootstrapped ? fit.deviance_p : kNotKnown;
-  const StatedFit stated = stated_fit(result.blocks, options, result.adaptive, result.deviance_p);
+  const StatedFit stated = stated_fit(result.blocks, options, result.adaptive,
+                                      bootstrapped ? fit.deviance_p : kNotKnown);
+  result.deviance_p = stated.deviance_p;
   if (!fit.fit.undetermined) {
     result.likeliest = fit.fit.parameters;
   }

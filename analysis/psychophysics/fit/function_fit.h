@@ -48,7 +48,7 @@ struct FunctionFit {
   std::string no_interval;       // why the stated intervals would be wrong; empty: they are there
   bool lapse_told{true};         // else the lapse rate's interval is that of its prior
   double deviance{kNotKnown};    // of the likelihood
-  double deviance_p{kNotKnown};  // of the parametric bootstrap; NaN: none was drawn
+  double deviance_p{kNotKnown};  // of the parametric bootstrap, of listed levels else of chi-square
   double overdispersion{kNotKnown};   // eta of the Bayesian fit; 0: binomial
   std::vector<BandPoint> band;        // rising shares; empty: there was no bootstrap
   std::vector<std::string> warnings;  // sentences

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "analysis/psychometric/fit/adaptive_posterior.h"
 #include "core/base/random.h"
@@ -122,6 +123,30 @@ TEST(StatedFit, ScatterBeyondChanceMakesIntervalsLonger) {
   EXPECT_LT(scattered.threshold.low, chance.threshold.low);
   EXPECT_GT(scattered.threshold.high, chance.threshold.high);
   EXPECT_EQ(scattered.estimate.threshold, chance.estimate.threshold);
+}
+
+/// Chi-square of four degrees of freedom, seven levels less three parameters, in closed form.
+TEST(StatedFit, WithoutSamplesChiSquareJudgesTheScatter) {
+  constexpr double kNoSamples = std::numeric_limits<double>::quiet_NaN();
+  const LikelihoodOptions options = stated_options(Task::kForcedChoice);
+  std::vector<TrialBlock> blocks{{-2.0, 14, 40}, {-1.0, 29, 40}, {-0.5, 18, 40}, {0.0, 35, 40},
+                                 {0.5, 25, 40},  {1.0, 39, 40},  {2.0, 36, 40}};
+  const StatedFit scattered = stated_fit(blocks, options, false, kNoSamples);
+  const double half =
+      0.5 * deviance_of(fitted_function(options.function, scattered.likeliest.parameters), blocks)
+                .deviance;
+  EXPECT_NEAR(scattered.deviance_p, std::exp(-half) * (1.0 + half), 1e-9);
+  EXPECT_EQ(scattered.widening, stated_fit(blocks, options, false, 0.01).widening);
+  blocks = {{-2.0, 21, 40}, {-1.0, 22, 40}, {-0.5, 26, 40}, {0.0, 30, 40},
+            {0.5, 34, 40},  {1.0, 37, 40},  {2.0, 39, 40}};
+  const StatedFit smooth = stated_fit(blocks, options, false, kNoSamples);
+  EXPECT_GT(smooth.deviance_p, kUnusualScatter);
+  EXPECT_EQ(smooth.widening, 1.0);
+  for (TrialBlock& block : blocks) {
+    block = {block.level, block.correct / 10, 4};
+  }
+  EXPECT_TRUE(std::isnan(stated_fit(blocks, options, false, kNoSamples).deviance_p))
+      << "too few trials at a level";
 }
 
 }  // namespace
