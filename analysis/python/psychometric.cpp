@@ -88,7 +88,8 @@ py::tuple interval(const analysis::StatedFit& fit, const analysis::ProfileInterv
 }
 
 /// A fit's numbers, and the function that it found; levels in the unit of the stimulus.
-/// @param how  draws that judge the scatter of answers to listed levels; a count of 0: nothing does
+/// @param how  draws that judge the scatter of answers to listed levels; a count of 0: chi-square
+/// does
 py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOptions& options,
              bool adaptive, const analysis::FitBootstrap& how) {
   std::optional<PsychometricFunction> function;
@@ -121,7 +122,7 @@ py::dict fit(const std::vector<analysis::TrialBlock>& blocks, const LikelihoodOp
   result["guess"] = found.estimate.guess;
   result["log_likelihood"] = found.likeliest.log_likelihood;
   result["deviance"] = deviance.deviance;
-  result["deviance_p"] = deviance_p;
+  result["deviance_p"] = found.deviance_p;
   result["undetermined"] = !found.told;
   result["no_interval"] = found.no_interval;
   return result;

@@ -28,7 +28,8 @@ class Fit:
     log_likelihood: float                        #: without binomial coefficients
     deviance: float                              #: 2 (log-likelihood of the shares - its own)
     deviance_p: float                            #: share of simulated observers with this function
-                                                 #: whose deviance is as large; NaN: none was drawn
+                                                 #: whose deviance is as large, or that of
+                                                 #: chi-square; NaN: adaptive, or too few answers
     undetermined: bool                           #: the answers do not tell threshold and width
     no_interval: str                             #: why there are no intervals; "": there are
 
@@ -78,8 +79,8 @@ def fit(levels: npt.ArrayLike, correct: npt.ArrayLike, total: npt.ArrayLike | No
               posterior (docs/algorithms/procedure-coverage.md), else of the likelihood
     presentable   lowest and highest level that a trial could have had, if no trial had them
               [unit of the level]
-    resamples   simulated observers from whom deviance_p follows; 0: none, and intervals are those
-              of answers without scatter
+    resamples   simulated observers from whom deviance_p follows; 0: none, and deviance_p is that of
+              chi-square
     participant, condition   of a report, "P01" and "soft, left": deviance_p is then drawn as there
     function, scale, origin, share, tail   as psychometric_function()"""
     right = _counts(correct, "correct")

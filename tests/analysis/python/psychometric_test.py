@@ -61,9 +61,8 @@ class FitTest(unittest.TestCase):
                 self.assertEqual((value, *interval),
                                  tuple(own.loc[name, ["estimate", "low", "high"]]))
             plain = haptrial.fit(range(1, 7), counts, [25] * 6, **given, resamples=0)
-            shorter = plain.threshold_interval[1] < fit.threshold_interval[1]
-            self.assertEqual(shorter, fit.deviance_p < 0.2)
-            self.assertTrue(math.isnan(plain.deviance_p))
+            self.assertEqual(plain.threshold_interval, fit.threshold_interval)  # by chi-square
+            self.assertAlmostEqual(plain.deviance_p, fit.deviance_p, delta=0.15)
 
     def test_single_trials_and_their_sums_are_the_same(self):
         levels, right = [1.0, 2.0, 3.0, 4.0], [11, 13, 18, 20]
