@@ -280,6 +280,16 @@ TEST_F(TrialsImportTest, WhatWasImportedIsExportedIfNoTimesAreNeeded) {
   }
 }
 
+TEST_F(TrialsImportTest, AFactorOfOneLevelIsNamedByItsColumn) {
+  test::write_text(folder_ / "t.csv",
+                   "participant,cond,response,correct\nP1,0.1,a,1\nP1,0.10,b,0\nP2,0.1,a,1\n");
+  const CommandResult run =
+      run_command("haptrial import " + path("t.csv") + " --factor cond --out " + path("one"));
+  EXPECT_EQ(run.status, 2);
+  EXPECT_THAT(run.errors, HasSubstr("t.csv: the column cond has one level, 0.1; allowed: two"));
+  EXPECT_FALSE(fs::exists(folder_ / "one"));
+}
+
 TEST_F(TrialsImportTest, AnAnalysisThatNothingJudgesIsRefused) {
   test::write_text(folder_ / "t.csv",
                    "participant,first,second,answer\nP1,A,B,first\nP1,B,A,second\n");

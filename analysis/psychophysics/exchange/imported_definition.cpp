@@ -50,6 +50,7 @@ std::string kind_of(const ImportedStudy& study, const ImportedAnalysis& analysis
 }
 
 /// The words of a factor in a definition: numbers, or quoted words.
+/// @throws InputError if it has one level
 std::string factor_levels(const ImportedStudy& study, std::size_t factor) {
   std::set<double> numbers;
   std::set<std::string> words;
@@ -58,8 +59,15 @@ std::string factor_levels(const ImportedStudy& study, std::size_t factor) {
     value.word.empty() ? static_cast<void>(numbers.insert(value.number))
                        : static_cast<void>(words.insert(toml_text(value.word)));
   }
-  return words.empty() ? fmt::format("{}", fmt::join(numbers, ", "))
-                       : fmt::format("{}", fmt::join(words, ", "));
+  const std::string levels = words.empty() ? fmt::format("{}", fmt::join(numbers, ", "))
+                                           : fmt::format("{}", fmt::join(words, ", "));
+  if (std::max(words.size(), numbers.size()) < 2) {
+    const std::string& column = study.columns.factors[factor].column;
+    throw InputError(
+        fmt::format("{}: the column {} has one level, {}; allowed: two or more levels of a factor",
+                    study.sources.front().name, column, levels));
+  }
+  return levels;
 }
 
 std::string factors_table(const ImportedStudy& study) {

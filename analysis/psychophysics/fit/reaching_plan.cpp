@@ -44,12 +44,17 @@ constexpr std::array<std::pair<const char*, ReachQuantity>, 7> kQuantities{
      {"force_compensation", ReachQuantity::kForceCompensation},
      {"throughput", ReachQuantity::kThroughput}}};
 
+std::vector<std::string> names_of_quantities() {
+  std::vector<std::string> names;
+  for (const auto& [name, quantity] : kQuantities) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
 void read_quantities(Table& table, const std::string& key, ReachingPlan& plan) {
   plan.quantities.clear();
-  std::vector<std::string> known;
-  for (const auto& [name, quantity] : kQuantities) {
-    known.emplace_back(name);
-  }
+  const std::vector<std::string> known = names_of_quantities();
   for (const std::string& name : table.texts(key)) {
     const auto at = std::find(known.begin(), known.end(), name);
     if (at == known.end()) {
@@ -97,8 +102,9 @@ ReachingPlan read_reaching_plan(Table& table, const ReachingNames& names) {
               "or the distance after 150 ms")
       .integer("resamples", &P::resamples, 0, kMostResamples, "Resamples of the bootstrap")
       .custom("quantities",
-              "Quantities of reaches that are compared between the conditions of `by`: error, "
-              "movement_time, peak_speed, direction, area, force_compensation",
+              fmt::format("Quantities of reaches that are compared between the conditions of `by`: "
+                          "{}",
+                          fmt::join(names_of_quantities(), ", ")),
               read_quantities)
       .otherwise("[\"error\"]")
       .choice("cycles", &P::cycles,
