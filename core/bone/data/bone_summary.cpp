@@ -56,30 +56,57 @@ std::array<std::size_t, 256> count_pieces(const BoneModel& model) {
   return pieces;
 }
 
-/// Faces between voxels that hold something and such that do not; beyond the grid is nothing.
-std::size_t count_faces(const BoneModel& model) {
-  std::size_t faces = 0;
-  const VoxelGrid& grid = model.grid;
-  const auto full = [&](std::int32_t i, std::int32_t j, std::int32_t k) {
-    return i >= 0 && j >= 0 && k >= 0 && i < grid.size[0] && j < grid.size[1] && k < grid.size[2] &&
-           model.labels[grid.index(i, j, k)] != 0;
-  };
-  for (std::int32_t k = 0; k < grid.size[2]; ++k) {
-    for (std::int32_t j = 0; j < grid.size[1]; ++j) {
-      for (std::int32_t i = 0; i < grid.size[0]; ++i) {
-        if (!full(i, j, k)) {
-          continue;
-        }
-        faces += !full(i - 1, j, k);
-        faces += !full(i + 1, j, k);
-        faces += !full(i, j - 1, k);
-        faces += !full(i, j + 1, k);
-        faces += !full(i, j, k - 1);
-        faces += !full(i, j, k + 1);
-      }
+/// A voxel near a face, from the voxel that the face belongs to and from the face's middle.
+struct NearFace {
+  Eigen::Vector3i voxel;
+  Eigen::Vector3d place;
+};
+
+std::vector<NearFace> near_face(const Eigen::Vector3i& side) {
+  constexpr double kReach = 1.6;
+  std::vector<NearFace> near;
+  for (int n = 0; n < 125; ++n) {
+    const Eigen::Vector3i voxel(n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2);
+    const Eigen::Vector3d place = voxel.cast<double>() - 0.5 * side.cast<double>();
+    if (place.norm() <= kReach) {
+      near.push_back({voxel, place});
     }
   }
-  return faces;
+  return near;
+}
+
+/// Area in faces of voxels: the faces between voxels that hold something and such that do not, each
+/// over |x| + |y| + |z| of the normal there. Beyond the grid is nothing.
+double outside_of(const BoneModel& model) {
+  const VoxelGrid& grid = model.grid;
+  const Eigen::Array3i size(grid.size[0], grid.size[1], grid.size[2]);
+  const auto full = [&](const Eigen::Vector3i& v) {
+    return (v.array() >= 0).all() && (v.array() < size).all() &&
+           model.labels[grid.index(v.x(), v.y(), v.z())] != 0;
+  };
+  double area = 0.0;
+  for (int direction = 0; direction < 6; ++direction) {
+    const Eigen::Vector3i side = (direction < 3 ? 1 : -1) * Eigen::Vector3i::Unit(direction % 3);
+    const std::vector<NearFace> near = near_face(side);
+    for (std::size_t at = 0; at < model.labels.size(); ++at) {
+      if (model.labels[at] == 0) {
+        continue;
+      }
+      const auto [i, j, k] = place_of(grid, at);
+      const Eigen::Vector3i voxel(i, j, k);
+      if (full(voxel + side)) {
+        continue;
+      }
+      Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+      for (const NearFace& each : near) {
+        if (full(voxel + each.voxel)) {
+          normal -= each.place;
+        }
+      }
+      area += normal.isZero() ? 1.0 : normal.norm() / normal.lpNorm<1>();
+    }
+  }
+  return area;
 }
 
 }  // namespace
@@ -117,7 +144,7 @@ BoneSummary summary_of(const BoneModel& model) {
     summary.box.extend(one.box);
     summary.structures.push_back(one);
   }
-  summary.surface = static_cast<double>(count_faces(model)) * h * h / 1.5;
+  summary.surface = outside_of(model) * h * h;
   return summary;
 }
 

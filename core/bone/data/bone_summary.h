@@ -24,8 +24,10 @@ struct BoneSummary {
   std::size_t voxels{0};
   double volume{0.0};  // [m3]
   Eigen::AlignedBox3d box;
-  /// Area of the outside [m2]: faces between full and empty voxels, by 3/2, the mean of |x| + |y| +
-  /// |z| over all directions that a surface can have.
+  /// Area of the outside [m2]: faces between full and empty voxels, each over |x| + |y| + |z| of
+  /// the normal there, as a plane of that normal has so many faces for its area. The normal is the
+  /// direction away from what is full within 1.6 voxels. Within 4 % for balls and blocks of 40
+  /// voxels, however they are turned.
   double surface{0.0};
 };
 
