@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 /// Two small bones; the virtual hand removes some bone in every procedure and never spends an hour.
 class CurriculumSessionTest : public testing::Test {
@@ -132,9 +133,22 @@ TEST_F(CurriculumSessionTest, PagesSayHowEverybodyStands) {
               AllOf(HasSubstr("Class of"), HasSubstr("SIMULATED"), HasSubstr("every case is done"),
                     HasSubstr("S02"), HasSubstr("time at most 3600 s")));
   EXPECT_THAT(refused("bone class study.toml out --out class.html"), HasSubstr("exists already"));
+  good("bone class hard.toml hard --out hard.html");
+  EXPECT_THAT(test::read_text(*folder_ / "hard.html"),
+              AllOf(HasSubstr("no session is left; other is not done"), HasSubstr("open, 2 proc")));
   test::write_text(*folder_ / "none.toml", whole_);
   EXPECT_THAT(refused("bone class none.toml out --out none.html"),
               HasSubstr("has no [curriculum]"));
+}
+
+TEST_F(CurriculumSessionTest, ACurriculumThatNobodyCanFinishIsSaid) {
+  EXPECT_THAT(good("validate study.toml"), Not(HasSubstr("nobody can finish it")));  // 3 of 6
+  std::string few = test::read_text(*folder_ / "study.toml");
+  few.replace(few.find("sessions = 6"), 12, "sessions = 2");
+  test::write_text(*folder_ / "few.toml", few);
+  EXPECT_THAT(good("validate few.toml"),
+              HasSubstr("asks for at least 3 procedures, and design.sessions and "
+                        "design.procedures give a trainee 2: nobody can finish it"));
 }
 
 TEST_F(CurriculumSessionTest, MistakesGetASentence) {

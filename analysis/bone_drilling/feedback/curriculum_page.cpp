@@ -54,18 +54,31 @@ std::string last_of(const CurriculumCase& of, const CaseStanding& standing) {
   return fmt::format("{}", fmt::join(values, "; "));
 }
 
+std::string next_of(const Curriculum& curriculum, const ClassTrainee& trainee) {
+  if (!trainee.standing.next) {
+    return "every case is done";
+  }
+  const std::string& name = curriculum.cases[*trainee.standing.next].name;
+  if (!trainee.has_session_left) {
+    return fmt::format("no session is left; {} is not done", name);
+  }
+  const std::string why = why_next(curriculum, trainee.standing);
+  return name + (why.empty() ? "" : ": " + why);
+}
+
 Rows trainee_rows(const CurriculumClass& of) {
   Rows rows;
   for (const ClassTrainee& trainee : of.trainees) {
-    const CurriculumStanding& standing = trainee.standing;
+    CurriculumStanding standing = trainee.standing;
+    const std::string next = next_of(of.curriculum, trainee);
+    if (!trainee.has_session_left) {
+      standing.next.reset();
+    }
     std::vector<std::string> row{trainee.name, trainee.group.empty() ? "–" : trainee.group};
     for (std::size_t place = 0; place < of.curriculum.cases.size(); ++place) {
       row.push_back(state_of(standing, place));
     }
-    const std::string why = why_next(of.curriculum, standing);
-    row.push_back(!standing.next
-                      ? "every case is done"
-                      : of.curriculum.cases[*standing.next].name + (why.empty() ? "" : ": " + why));
+    row.push_back(next);
     rows.push_back(std::move(row));
   }
   return rows;

@@ -21,6 +21,7 @@ struct ClassTrainee {
   std::string group;  // empty: there are none
   bool simulated{false};
   bone::CurriculumStanding standing;
+  bool has_session_left{true};  // in which the next case would come
 };
 
 /// Everybody who learns by one curriculum.

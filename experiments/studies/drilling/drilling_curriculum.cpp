@@ -196,8 +196,8 @@ void write_class_page(const ClassRequest& request) {
     }
     if (!person.pilot && !person.excluded && !files.empty()) {
       const auto attempts = case_attempts(*d->curriculum, files, score ? &*score : nullptr);
-      found.trainees.push_back(
-          {person.subject, person.group, person.simulated, standing(*d->curriculum, attempts)});
+      found.trainees.push_back({person.subject, person.group, person.simulated,
+                                standing(*d->curriculum, attempts), person.next > 0});
     }
   }
   if (found.trainees.empty()) {

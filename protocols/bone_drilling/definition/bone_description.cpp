@@ -120,6 +120,27 @@ void warn_of_hints(const BoneDefinition& d, std::vector<std::string>& warnings) 
   }
 }
 
+/// A trainee who passes every procedure does as many as all cases ask for together.
+void warn_of_curriculum(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  if (!d.curriculum) {
+    return;
+  }
+  int asked = 0;
+  for (const bone::CurriculumCase& each : d.curriculum->cases) {
+    asked += each.in_a_row;
+  }
+  int most = 0;
+  for (int session = 1; session <= d.sessions(); ++session) {
+    most += d.procedures_in(session);
+  }
+  if (asked > most) {
+    warnings.push_back(
+        fmt::format("the curriculum asks for at least {} procedures, and design.sessions and "
+                    "design.procedures give a trainee {}: nobody can finish it",
+                    asked, most));
+  }
+}
+
 void warn_of_bones(const BoneDefinition& d, std::vector<std::string>& warnings) {
   for (const auto& bone : d.bones) {
     for (const std::string& note : bone->notes) {
@@ -138,6 +159,7 @@ std::vector<std::string> BoneDefinition::warnings() const {
   warn_of_vibration(d, warnings);
   warn_of_devices(d, warnings);
   warn_of_hints(d, warnings);
+  warn_of_curriculum(d, warnings);
   return warnings;
 }
 
