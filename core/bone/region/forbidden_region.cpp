@@ -1,6 +1,7 @@
 #include "core/bone/region/forbidden_region.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/bone/data/anatomy.h"
@@ -30,18 +31,34 @@ void ForbiddenRegion::forget() noexcept {
   std::fill(felt_.begin(), felt_.end(), false);
 }
 
-ForbiddenRegion::Deepest ForbiddenRegion::deepest(std::size_t structure,
-                                                  std::span<const BurrShape::Ball> balls,
-                                                  const Eigen::Vector3d& tip_B,
-                                                  const Eigen::Vector3d& axis_B) const noexcept {
-  Deepest found;
+ForbiddenRegion::Depth ForbiddenRegion::depth(std::size_t structure,
+                                              std::span<const BurrShape::Ball> balls,
+                                              const Eigen::Vector3d& tip_B,
+                                              const Eigen::Vector3d& axis_B) const noexcept {
+  const auto depth_of = [&](const BurrShape::Ball& ball, SurfaceDepth::LocalTissue& here) {
+    const bool known = map_->depth(structure).at(tip_B + ball.z * axis_B, here);
+    return known ? std::max(0.0, ball.radius + margin_ - here.distance) : 0.0;
+  };
+  Depth found;
+  SurfaceDepth::LocalTissue here{};
   for (const BurrShape::Ball& ball : balls) {
-    SurfaceDepth::LocalTissue here{};
-    if (map_->depth(structure).at(tip_B + ball.z * axis_B, here) &&
-        ball.radius + margin_ - here.distance > found.depth) {
-      found = {ball.radius + margin_ - here.distance, here.gradient};
-    }
+    found.deepest = std::max(found.deepest, depth_of(ball, here));
   }
+  if (found.deepest <= 0.0) {
+    return found;
+  }
+  double sum = 0.0;
+  for (const BurrShape::Ball& ball : balls) {
+    const double share = depth_of(ball, here) / found.deepest;
+    const double squared = share * share;
+    const double sixth = squared * squared * squared;
+    sum += sixth * squared;
+    found.way_out += sixth * share * here.gradient;
+  }
+  const double count = static_cast<double>(balls.size());
+  const double part = std::sqrt(std::sqrt(std::sqrt(sum / count)));
+  found.mean = part * found.deepest;
+  found.way_out *= part / sum;  // part^8 is sum / count
   return found;
 }
 
@@ -50,11 +67,11 @@ Eigen::Vector3d ForbiddenRegion::tick(std::span<const BurrShape::Ball> balls,
                                       const Eigen::Vector3d& axis_B) noexcept {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (std::size_t n = 0; n < depths_.size(); ++n) {
-    const Deepest found = deepest(n, balls, tip_B, axis_B);
-    depths_[n] = found.depth;
-    felt_[n] = felt_[n] || found.depth <= 0.0;
+    const Depth found = depth(n, balls, tip_B, axis_B);
+    depths_[n] = found.deepest;
+    felt_[n] = felt_[n] || found.deepest <= 0.0;
     if (felt_[n]) {
-      force += std::min(spring_ * found.depth, most_) * found.gradient;
+      force += std::min(spring_ * found.mean, most_) * found.way_out;
     }
   }
   return force;
@@ -65,9 +82,9 @@ double ForbiddenRegion::energy(std::span<const BurrShape::Ball> balls, const Eig
   double sum = 0.0;
   const double bend = spring_ > 0.0 ? most_ / spring_ : 0.0;  // where the force grows no more [m]
   for (std::size_t n = 0; n < depths_.size(); ++n) {
-    const double depth = deepest(n, balls, tip_B, axis_B).depth;
-    const double bent = std::min(depth, bend);
-    sum += 0.5 * spring_ * bent * bent + most_ * (depth - bent);
+    const double mean = depth(n, balls, tip_B, axis_B).mean;
+    const double bent = std::min(mean, bend);
+    sum += 0.5 * spring_ * bent * bent + most_ * (mean - bent);
   }
   return sum;
 }

@@ -31,10 +31,14 @@ class RegionMap {
   std::vector<SurfaceDepth> depths_;
 };
 
-/// A burr, one ball or several of radius r and centre c, is kept out of the margin m around each
-/// structure, whose signed distance is φ, as far as its deepest ball is in it by p = r + m - φ(c):
+/// A burr, n balls of radius r and centre c, is kept out of the margin m around each structure,
+/// whose signed distance is φ. With the depths p_b = r + m - φ(c) > 0 of its balls, else 0:
 ///
-///     f = min(k p, f_max) ∇φ(c),   p > 0
+///     f = min(k p, f_max) Σ (p_b / p)^7 ∇φ(c_b) / n,   p^8 = Σ p_b^8 / n
+///
+/// That is min(k p, f_max) ∇φ of one ball, or of balls that are equally deep. If a burr lies
+/// between two sides of a structure, the force goes over from the one ball to the other without a
+/// step; one ball of n alone has n^(-1/8) of the depth.
 ///
 /// The force is minus the gradient of an energy, k p² / 2 and beyond p = f_max / k a line, so that
 /// nothing is gained on a closed path; it begins at 0 where the burr enters.
@@ -60,12 +64,13 @@ class ForbiddenRegion {
                 const Eigen::Vector3d& axis_B) const noexcept;
 
  private:
-  struct Deepest {
-    double depth{0.0};  // [m]
-    Eigen::Vector3d gradient{Eigen::Vector3d::Zero()};
+  struct Depth {
+    double deepest{0.0};                               // of a ball [m]
+    double mean{0.0};                                  // p [m]
+    Eigen::Vector3d way_out{Eigen::Vector3d::Zero()};  // minus the gradient of p
   };
-  Deepest deepest(std::size_t structure, std::span<const BurrShape::Ball> balls,
-                  const Eigen::Vector3d& tip_B, const Eigen::Vector3d& axis_B) const noexcept;
+  Depth depth(std::size_t structure, std::span<const BurrShape::Ball> balls,
+              const Eigen::Vector3d& tip_B, const Eigen::Vector3d& axis_B) const noexcept;
 
   double margin_, spring_, most_;
   std::shared_ptr<const RegionMap> map_;

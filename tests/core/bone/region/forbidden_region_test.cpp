@@ -179,6 +179,37 @@ TEST(ForbiddenRegionTest, BetweenTwoSidesTheForceTurnsWithoutAStep) {
   EXPECT_NEAR(region.tick(kBurr, Vector3d(0.0, 1e-4, 2e-4), kAxis).norm(), 0.0, 1e-3);
 }
 
+/// A rod that lies across a groove meets a wall with either end; in the middle both push alike.
+TEST(ForbiddenRegionTest, ARodBetweenTwoSidesIsHandedOverWithoutAStep) {
+  RegionSetup setup = setup_of(RegionKind::kHard);
+  setup.structures = {"dura"};
+  ForbiddenRegion region(setup, std::make_shared<const RegionMap>(setup, bone_with_groove(), 2e-3));
+  const BurrShape::Ball small[] = {{0.0, 0.5e-3}};
+  const BurrShape::Ball rod[] = {{-1.5e-3, 1e-3}, {0.0, 1e-3}, {1.5e-3, 1e-3}};
+  const Vector3d along = Vector3d::UnitX();
+  region.tick(small, Vector3d::Zero(), along);  // felt from now on
+  constexpr double kStep = 1e-6;
+  const auto force_at = [&](double x) { return region.tick(rod, Vector3d(x, 1e-4, 2e-4), along); };
+  const auto energy_at = [&](double x) {
+    return region.energy(rod, Vector3d(x, 1e-4, 2e-4), along);
+  };
+  Vector3d before = force_at(-1.5e-3);
+  EXPECT_GT(before.x(), 1.5);
+  double steepest = 0.0;
+  for (int i = 1; i <= 3000; ++i) {
+    const double x = -1.5e-3 + i * kStep;
+    const Vector3d force = force_at(x);
+    const double depth = 3e-3 - (3.25e-3 - 1.5e-3 - std::abs(x));  // of the deeper end
+    EXPECT_NEAR(region.depths()[0], depth, 0.1 * kVoxel);
+    EXPECT_LE(force.norm(), setup.spring() * depth + 0.05);
+    EXPECT_NEAR(force.x(), (energy_at(x - kStep) - energy_at(x + kStep)) / (2.0 * kStep), 1e-2);
+    steepest = std::max(steepest, (force - before).norm() / kStep);
+    before = force;
+  }
+  EXPECT_LT(steepest, 20e3);  // [N/m]; a step of 2.5 N would be 2.5e6
+  EXPECT_NEAR(force_at(0.0).norm(), 0.0, 1e-3);
+}
+
 TEST(ForbiddenRegionTest, ABurrThatIsInsideWhenItIsTakenIsNotThrownOut) {
   ForbiddenRegion region = region_of(setup_of(RegionKind::kHard));
   const Vector3d inside(5.5e-3, 0, 0);
