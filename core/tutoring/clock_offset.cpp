@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace haptrial::tutoring {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kOtherWay = 20'000'000;  // more than jitter changes a round trip [ns]
 
 void ClockOffset::add(std::int64_t sent, std::int64_t heard, std::int64_t answered,
                       std::int64_t now) noexcept {
@@ -25,9 +27,13 @@ void ClockOffset::add(std::int64_t sent, std::int64_t heard, std::int64_t answer
     best_ = answer;
   }
   if (now >= second_ends_) {
-    kept_[count_++ % kSeconds] = best_;
+    const bool changed = count_ > 0 && std::abs(best_.round_trip - trip_before_) > kOtherWay;
+    trip_before_ = best_.round_trip;
+    if (!changed) {
+      kept_[count_++ % kSeconds] = best_;
+      fit();
+    }
     best_ = {};
-    fit();
   }
 }
 

@@ -10,7 +10,9 @@ namespace haptrial::tutoring {
 /// offset as in NTP (RFC 5905, section 8), from the answer of each second that was under way for
 /// the shortest time, since there queues had the least part; drift by a line through those of the
 /// last minute. A way that is longer than the way back by d makes the offset wrong by d / 2, which
-/// no method can see. Servo thread.
+/// no method can see. A second whose round trip differs by more than 20 ms from that of the second
+/// before is left out: while the network changes, answers come by another way than their messages
+/// went. Servo thread.
 class ClockOffset {
  public:
   /// An answer that has come. All in [ns].
@@ -42,8 +44,9 @@ class ClockOffset {
   std::size_t count_{0};                 // kept in all
   Answer best_;                          // of the present second
   std::int64_t second_ends_{0};
-  std::int64_t mean_time_{0};  // of the line
-  double mean_offset_{0.0};    // of the line, beside the first kept
+  std::int64_t trip_before_{-1};  // round trip of the second before
+  std::int64_t mean_time_{0};     // of the line
+  double mean_offset_{0.0};       // of the line, beside the first kept
   std::int64_t base_{0};
   double drift_{0.0};
   std::int64_t last_round_trip_{-1};
