@@ -26,8 +26,8 @@ std::vector<ColumnDoc> docs_of(const record::TableDescription& table);
 void write_channel(const record::SessionReader& reader, const record::TableDescription& table,
                    Delimited kind, const WrittenSamples* ticks, GzipFile& file);
 
-/// What befell the channels as events, such as "channel_lost" with "grip: no data come any more".
-/// @param messages  whether what the channels said is among them
+/// Incidents of the channels as events, such as "channel_lost" with "grip: no data come any more".
+/// @param messages  whether texts that the channels gave are among them
 std::vector<record::EventRow> channel_events(const record::SessionReader& reader, bool messages);
 
 }  // namespace haptrial::exchange

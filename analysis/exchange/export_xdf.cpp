@@ -161,7 +161,7 @@ double number_of(const record::Cell& cell) {
       cell);
 }
 
-/// What a channel said, each text at its time.
+/// The texts that a channel gave, each at its time.
 void write_messages(const SessionReader& reader, const analysis::ChannelQuality& channel,
                     XdfFile& file) {
   const std::string name = channel.samples > 0 ? channel.name + "_messages" : channel.name;
