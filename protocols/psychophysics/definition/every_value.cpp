@@ -201,6 +201,37 @@ void check_answers(const TrialsDefinition& d, const TrialValues& values, Names& 
   }
 }
 
+/// The channel to which a value belongs. @param place  of the value among all
+const channel::ChannelOptions& channel_of(const TrialsDefinition& d, std::size_t place) {
+  auto channel = d.channels.begin();
+  while (place >= channel->plan.quantities.size()) {
+    place -= channel->plan.quantities.size();
+    ++channel;
+  }
+  return *channel;
+}
+
+/// Adds a sentence on each stage that ends a trial of a dry run, since it waits for a value that
+/// the sine in the channel's place never has.
+void note_unreached(const TrialsDefinition& d, const Presented& presented,
+                    std::set<std::string>& sentences) {
+  for (const NamedStage& stage : presented.stages) {
+    const Until& until = stage.stage.until;
+    if (!until.channel || stage.stage.late == Consequence::kGoOn) {
+      continue;
+    }
+    const channel::ChannelOptions& channel = channel_of(d, *until.channel);
+    const double low = channel.simulated.mean - channel.simulated.amplitude;
+    const double high = channel.simulated.mean + channel.simulated.amplitude;
+    if (high <= until.above || low >= until.below) {
+      sentences.insert(fmt::format(
+          "stage {} waits for a value of channel {} that a dry run never has: it goes from {:g} to "
+          "{:g} there (channels.{}.simulated), so that no trial gets on",
+          stage.name, channel.name, low, high, channel.name));
+    }
+  }
+}
+
 /// Goes through the values that the trials of a definition may have.
 class EveryValue {
  public:
@@ -232,6 +263,7 @@ class EveryValue {
   bool first_{true};                 // nothing was presented yet
   std::vector<std::string> bodies_;  // words about rigid ones
   std::vector<std::string> cut_;     // sentences on blocks that have too many combinations
+  std::set<std::string> unreached_;  // sentences on stages that wait for a channel in vain
   std::set<std::string> read_;       // names that the block's values depend on
 };
 
@@ -248,6 +280,7 @@ void EveryValue::present_interval(Table& root, Names& names, std::size_t place) 
   handle_.add(presented);
   picture_.add(presented);
   lead_.add(presented);
+  note_unreached(d_, presented, unreached_);
   prepare_moving_bodies(presented.fields, d_.rate);
   if (std::exchange(first_, false) && place == 0) {
     check_bodies(presented.fields);
@@ -472,6 +505,7 @@ HandleText EveryValue::check() {
   for (const auto& said : {picture_.warnings(), lead_.warnings(), cut_}) {
     words.warnings.insert(words.warnings.end(), said.begin(), said.end());
   }
+  words.warnings.insert(words.warnings.end(), unreached_.begin(), unreached_.end());
   words.lines.insert(words.lines.begin(), bodies_.begin(), bodies_.end());
   return words;
 }

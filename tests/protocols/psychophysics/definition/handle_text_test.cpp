@@ -74,6 +74,29 @@ TEST(HandleTextTest, FrictionOnASurfaceHoldsWithItsCoefficientTimesThePress) {
   EXPECT_THAT(rubbing("static = 0.99\ndynamic = 0.9\n", 1e5), Not(IsEmpty()));
 }
 
+TEST(HandleTextTest, AValueThatADryRunNeverHasIsWarnedOf) {
+  const auto waiting = [](const std::string& above, const std::string& then,
+                          const std::string& simulated) {
+    const std::string until = fmt::format(
+        "until = {{ channel = \"grip\", above = {} }}\ntimeout = {{ after = 5.0, then = \"{}\" }}",
+        above, then);
+    return words_of(test::replaced(felt(R"("wall")", kWall +
+                                                         "[channels.grip]\nkind = \"line\"\npath = "
+                                                         "\"/dev/ttyACM0\"\n"
+                                                         "quantities = { force = \"N\" }\n" +
+                                                         simulated),
+                                   "until = { time = 1.0 }", until))
+        .warnings;
+  };
+  const std::string sine = "simulated = { mean = 1.0, amplitude = 1.5 }\n";
+  EXPECT_THAT(waiting("2.0", "abort", ""),
+              Contains(AllOf(HasSubstr("stage feel waits for a value of channel grip"),
+                             HasSubstr("from 0 to 0"))));
+  EXPECT_THAT(waiting("2.5", "abort", sine), Contains(HasSubstr("from -0.5 to 2.5")));
+  EXPECT_THAT(waiting("2.0", "abort", sine), Not(Contains(HasSubstr("grip"))));
+  EXPECT_THAT(waiting("2.0", "go on", ""), Not(Contains(HasSubstr("grip"))));
+}
+
 // A hand of 2 kg has 15 N·s/m for each 0.8 kg, 37.5 N·s/m.
 TEST(HandleTextTest, AMatrixThatPushesMovementsOnIsWarnedOfAndRefusedIfNoHandDampsIt) {
   const auto medium = [](const char* matrix) {
