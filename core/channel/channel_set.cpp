@@ -67,6 +67,7 @@ ChannelSet::ChannelSet(const std::vector<ChannelOptions>& options, const record:
     }
     parts_.push_back(std::move(part));
   }
+  arrived_.reserve(values_.size());
 }
 
 record::TableList ChannelSet::tables() const {
