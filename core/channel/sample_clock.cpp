@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace haptrial::channel {
 namespace {
@@ -14,6 +15,8 @@ constexpr double kMostDrift = 0.01;       // of the rate, from 1
 constexpr double kUnknownDrift = 200e-6;  // before the rate is estimated
 constexpr double kLateFor = 0.5;          // until what is late is a step [s]
 constexpr double kLeastStep = 5e-3;       // [s]
+constexpr double kFirstStep = 0.1;        // of the second point of a line [s]
+constexpr double kCovered = 0.95;         // by the uncertainty
 
 }  // namespace
 
@@ -23,6 +26,7 @@ void SampleClock::restart() {
   offset_ = 0.0;
   rate_ = 1.0;
   spread_ = 0.0;
+  least_delay_ = 0.0;
   late_since_ = -1.0;
 }
 
@@ -32,9 +36,14 @@ SampleTime SampleClock::time_of(std::int64_t received_ns, double waited) const {
           std::hypot(options_.latency_uncertainty, 0.5 * waited), 0.0};
 }
 
+/// What is no delay. The first point alone may be late by any.
+double SampleClock::least_step() const {
+  return lowest_.size() == 1 ? kFirstStep : std::max({kLeastStep, 4.0 * spread_, least_delay_});
+}
+
 /// Whether samples have been late for so long, without one that was not, that the clock stepped.
 bool SampleClock::all_late(double excess, const Point& point) {
-  if (excess < std::max(kLeastStep, 4.0 * spread_)) {
+  if (excess < least_step()) {
     late_since_ = -1.0;
     return false;
   }
@@ -57,7 +66,7 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns, do
               1e-9 * static_cast<double>(received_ns - received_origin_)};
   if (!lowest_.empty()) {
     const double excess = point.received - line_at(point.device);
-    const bool backwards = excess < -std::max(kLeastStep, 4.0 * spread_);
+    const bool backwards = excess < -least_step();
     if (backwards || all_late(excess, point)) {
       step = -(backwards ? excess : least_late_);
       restart();
@@ -76,7 +85,8 @@ SampleTime SampleClock::time_of(double device_time, std::int64_t received_ns, do
   const double measured = std::min(line_at(point.device), arrived) - options_.latency;
   SampleTime time;
   time.time_ns = received_origin_ + std::llround(1e9 * measured);
-  time.uncertainty = std::hypot(options_.latency_uncertainty, spread_ + drift);
+  time.uncertainty =
+      std::hypot(options_.latency_uncertainty, std::max(spread_, least_delay_) + drift);
   if (lowest_.size() == 1) {  // the line may be as late as its only point
     time.uncertainty = std::max(time.uncertainty, waited);
   }
@@ -148,6 +158,11 @@ void SampleClock::fit() {
   const auto middle = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 2);
   std::nth_element(above.begin(), middle, above.end());
   spread_ = std::max(0.0, *middle);
+  least_delay_ = 0.0;
+  if (const auto n = static_cast<double>(above.size()); n > 1.0 && above.size() < kForRate) {
+    const double mean = std::accumulate(above.begin(), above.end(), 0.0) / n;
+    least_delay_ = mean * (std::pow(1.0 - kCovered, -1.0 / (n - 1.0)) - 1.0);
+  }
 }
 
 }  // namespace haptrial::channel

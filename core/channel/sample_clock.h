@@ -27,6 +27,10 @@ struct ClockOptions {
 /// clock skew"), of which each quarter of a second keeps the lowest. A clock that steps is seen by
 /// samples that come before they were measured, or all too late for half a second, during which
 /// their uncertainty is how late they are; the line then begins anew.
+/// A line below n points with delays of one exponential distribution is late by their least delay,
+/// which has the limit (0.05^(-1 / (n - 1)) - 1) times their mean height above it: n (n - 1) times
+/// its ratio to the sum of the heights has the F distribution with 2 and 2 n - 2 degrees of
+/// freedom.
 ///
 /// One thread; allocates.
 class SampleClock {
@@ -50,6 +54,7 @@ class SampleClock {
   };
   void keep(const Point& point);
   void fit();
+  double least_step() const;
   bool all_late(double excess, const Point& point);
   double line_at(double device) const { return offset_ + rate_ * device; }
 
@@ -62,6 +67,7 @@ class SampleClock {
   double offset_{0.0};        // of the line [s]
   double rate_{1.0};          // seconds of the session in one of the instrument
   double spread_{0.0};        // of the lowest points above the line [s]
+  double least_delay_{0.0};   // of few points, at most (95 %), by which the line is late [s]
   double late_since_{-1.0};   // all samples have been late since then [s]; -1: they are not
   double least_late_{0.0};    // of these, by how much [s]
 };

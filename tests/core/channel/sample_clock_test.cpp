@@ -68,6 +68,33 @@ TEST(SampleClockTest, PlantedTimesAreWithinTheStatedUncertainty) {
   }
 }
 
+/// From the second point on; how late the first one comes cannot be known.
+TEST(SampleClockTest, TheFirstSecondsOfASlowClockStateWhatFewPointsTell) {
+  constexpr int kRuns = 500;
+  for (const double rate : {2.0, 10.0, 30.0}) {
+    for (const double delay : {5e-3, 30e-3}) {
+      RandomStream random(11, "way");
+      int within = 0;
+      int all = 0;
+      for (int run = 0; run < kRuns; ++run) {
+        SampleClock clock({0.0, 1e-4});
+        double came = 0.0;
+        for (int i = 0; i < 3.0 * rate; ++i) {
+          const double truth = i / rate;
+          came = std::max(came, truth - delay * std::log(1.0 - random.uniform()));
+          const SampleTime time = clock.time_of(truth, std::llround(1e9 * came));
+          const double error = std::abs(1e-9 * static_cast<double>(time.time_ns) - truth);
+          if (truth >= 0.5) {
+            ++all;
+            within += error <= time.uncertainty ? 1 : 0;
+          }
+        }
+      }
+      EXPECT_GT(static_cast<double>(within) / all, 0.93) << rate << " Hz, " << delay;
+    }
+  }
+}
+
 TEST(SampleClockTest, BurstsAreNoSteps) {
   const Followed followed = follow({.burst = 0.08}, 60.0, 3);
   EXPECT_GT(followed.within, 0.95);
