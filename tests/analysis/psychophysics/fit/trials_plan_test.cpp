@@ -334,7 +334,7 @@ TEST(TrialsPlanTest, ACovariateIsAScoreOfAPage) {
 
 TEST(TrialsPlanTest, GainAndLagAreAtFrequenciesOfTheTarget) {
   PlanDefaults d = defaults();
-  d.pursuit = {{"pursue"}, {{"circle", {0.1, 0.25, 0.55}}}};
+  d.pursuit = {{"pursue"}, {{"circle", {0.1, 0.25, 0.55}}}, "circle"};
   const std::string pursuit = "[analysis]\nkind = \"pursuit\"\n";
   EXPECT_THAT(read(pursuit, d).pursuit.swing, ElementsAre(0.1, 0.25, 0.55));
   const PursuitPlan some = read(pursuit + "frequencies = [0.55, 0.1]\n", d).pursuit;
