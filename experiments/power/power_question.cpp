@@ -93,7 +93,7 @@ void add_sizes(const std::vector<protocols::StudyGroup>& groups, std::vector<Giv
   if (groups_vary && !all) {
     given.push_back({kAll, std::to_string(sum)});
   }
-  if (all && !groups_vary) {
+  if (all && !groups_vary && !groups.empty()) {
     const std::vector<long> sizes = in_proportion(groups, *all);
     for (std::size_t i = 0; i < sizes.size(); ++i) {
       given.push_back({"groups." + groups[i].name, std::to_string(sizes[i])});
