@@ -411,6 +411,22 @@ tests = ["low, high < high, low"]
   }
 }
 
+TEST_F(TrialsImportTest, LongLevelsShareTheRoomOfACondition) {
+  test::write_text(folder_ / "t.csv", R"(participant,material,tool,rt_s
+P1,hard acrylic,short needle,0.5
+P1,soft silicone with a rough coating,short needle,0.6
+P1,hard acrylic,long steel needle with a bevelled tip,0.5
+P1,soft silicone with a rough coating,long steel needle with a bevelled tip,0.7
+)");
+  const CommandResult made =
+      run_command("haptrial import " + path("t.csv") +
+                  " --factor material --factor tool --kind times --out " + path("long"));
+  ASSERT_EQ(made.status, 0) << made.errors;
+  ASSERT_EQ(run_command("haptrial analyze " + path("long")).status, 0);
+  EXPECT_THAT(test::read_text(folder_ / "long/report.md"),
+              HasSubstr("soft silicone with a rough coat, long steel needle with a bevell"));
+}
+
 TEST_F(TrialsImportTest, SettingsNeedAProcedure) {
   test::write_text(folder_ / "t.csv", "participant,level,answer\nP1,1,10.72\nP1,2,11.79\n");
   ASSERT_EQ(run_command("haptrial import " + path("t.csv") + " --kind magnitude --out " +

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/imported.h"
+#include "core/record/rows/condition_label.h"
 #include "core/record/rows/trial_rows.h"
 
 namespace haptrial::analysis::trials {
@@ -57,10 +58,10 @@ class SessionRows {
       const ImportedValue& value = trial.factors[i];
       levels.push_back(value.word.empty() ? fmt::format("{}", value.number) : value.word);
       if (study_.columns.factors[i].variable == "condition") {
-        return levels.back();
+        return record::condition_label({levels.back()});
       }
     }
-    return levels.empty() ? "trials" : fmt::format("{}", fmt::join(levels, ", "));
+    return levels.empty() ? "trials" : record::condition_label(std::move(levels));
   }
 
   void add_variable(const record::VariableRow& row) { writer_.add(std::span(&row, 1)); }

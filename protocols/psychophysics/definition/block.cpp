@@ -257,6 +257,11 @@ std::string formula_of_value(Table& table, const std::string& key) {
   return as_formula(table.number(key, {}, ""), "");
 }
 
+std::string shown_level(const std::string& formula) {
+  const bool quoted = formula.size() > 1 && formula.front() == '\'';
+  return quoted ? formula.substr(1, formula.size() - 2) : formula;
+}
+
 TrialDesign read_trial_design(Table& root, bool procedures) {
   Table design = root.table("design");
   TrialDesign d = trial_design_schema().read(design);

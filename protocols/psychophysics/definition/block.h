@@ -97,4 +97,7 @@ TrialDesign read_trial_design(Table& root, bool procedures);
 /// The formula of a value: of a number itself, of a text that contains $ itself, else the word.
 std::string formula_of_value(Table& table, const std::string& key);
 
+/// A level as tables show it: a word without the quotation marks of its formula.
+std::string shown_level(const std::string& formula);
+
 }  // namespace haptrial::protocols

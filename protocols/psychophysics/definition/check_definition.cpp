@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/record/rows/trial_rows.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -33,6 +34,25 @@ void check_track_factors(Table& root, const Track& track, const std::set<std::st
                               factors.empty() ? "none, the definition has no [factors]"
                                               : fmt::format("{}", fmt::join(factors, ", "))));
     }
+  }
+}
+
+/// A file tells tracks apart by name and levels, and has so much room for them.
+void check_track_name(Table& root, const TrialsDefinition& d, const Track& track) {
+  std::string longest = track.name;
+  for (const Factor& factor : d.order.factors) {
+    if (std::ranges::find(track.by, factor.name) != track.by.end()) {
+      const std::string& level = *std::ranges::max_element(
+          factor.levels, {}, [](const auto& each) { return each.size(); });
+      longest += ", " + shown_level(level);
+    }
+  }
+  if (longest.size() > record::kTrialWordBytes) {
+    root.reject(
+        table_of_tracks(root),
+        fmt::format("has a track \"{}\", which is over {} bytes long; choose shorter levels "
+                    "of its factors or a shorter name",
+                    longest, record::kTrialWordBytes));
   }
 }
 
@@ -63,6 +83,7 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
                   fmt::format("has two tracks \"{}\"; give each a name of its own", track.name));
     }
     check_track_factors(root, track, factors);
+    check_track_name(root, d, track);
     for (const std::string& variable : track.variables()) {
       check_track_variable(root, d, variable, factors);
     }

@@ -1,6 +1,7 @@
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
+#include "core/record/rows/condition_label.h"
 #include "protocols/psychophysics/definition/constrained_order.h"
 
 namespace haptrial::protocols {
@@ -30,17 +32,16 @@ std::vector<std::vector<GivenValue>> crossed(const std::vector<const Factor*>& f
   return all;
 }
 
-std::string bare(const std::string& formula) {
-  const bool quoted = formula.size() > 1 && formula.front() == '\'';
-  return quoted ? formula.substr(1, formula.size() - 2) : formula;
+std::vector<std::string> levels_of(const std::vector<GivenValue>& values) {
+  std::vector<std::string> levels;
+  for (const GivenValue& value : values) {
+    levels.push_back(shown_level(value.formula));
+  }
+  return levels;
 }
 
 std::string label_of(const std::vector<GivenValue>& values) {
-  std::string label;
-  for (const GivenValue& value : values) {
-    label += (label.empty() ? "" : ", ") + bare(value.formula);
-  }
-  return label;
+  return fmt::format("{}", fmt::join(levels_of(values), ", "));
 }
 
 /// The level of one factor, or of all of them, by which a rule tells trials apart.
@@ -308,14 +309,14 @@ NextTrial TrialSequence::make_next() {
     const Fixed& fixed = fixed_[fixed_at_];
     values.probe = fixed.probe;
     values.values.insert(values.values.end(), fixed.values.begin(), fixed.values.end());
-    plan.condition = label_of(fixed.values);
+    plan.condition = record::condition_label(levels_of(fixed.values));
   }
   if (!values.probe.empty()) {
     const auto& probe = block().probe->values;
     values.values.insert(values.values.end(), probe.begin(), probe.end());
   }
   if (plan.condition.empty()) {
-    plan.condition = block().name;
+    plan.condition = record::condition_label({block().name});
   }
   give_thresholds(values);
   ++begun_;
@@ -397,7 +398,7 @@ void TrialSequence::choose_track(NextTrial& next) {
   }
   next.values.values.insert(next.values.values.end(), running.values.begin(), running.values.end());
   add_factors(next, running.track->by, chosen, running.trials);
-  next.plan.condition = label_of(running.values);
+  next.plan.condition = record::condition_label(levels_of(running.values));
   if (probe_comes(block())) {
     next.values.probe = block().probe->name;
     next.track = -1;

@@ -71,6 +71,19 @@ TEST(TrialMistakesTest, MistakesOfFormulas) {
       Contains(AllOf(HasSubstr("variables.a"), HasSubstr("depends on itself"))));
 }
 
+TEST(TrialMistakesTest, ATrackHasRoomForItsLevels) {
+  const std::string factors = R"([factors]
+material = ["soft silicone with a rough coating", "hard acrylic"]
+tool = ["short needle", "steel needle"]
+)";
+  const std::string by =
+      test::replaced(kSmallStaircase, "range", "by = [\"material\", \"tool\"]\nrange");
+  EXPECT_THAT(problems_of_trials(small_trials(by, factors)), IsEmpty());
+  EXPECT_THAT(problems_of_trials(small_trials(
+                  by, test::replaced(factors, "short needle", "short needle with a bevelled tip"))),
+              Contains(HasSubstr("short needle with a bevelled tip\", which is over 64 bytes")));
+}
+
 // A block that gives the variable of a procedure its value asks none: nothing else says the level.
 TEST(TrialMistakesTest, ALevelThatNeedsItself) {
   EXPECT_THAT(problems_of_trials(

@@ -12,6 +12,7 @@
 
 #include "core/base/random.h"
 #include "core/psychometric/procedure/procedure.h"
+#include "core/record/table/schema.h"
 #include "protocols/psychophysics/definition/every_value.h"
 #include "protocols/psychophysics/definition/trial_values.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
@@ -161,6 +162,31 @@ std::string blocks_only(const std::string& more) {
   const std::string comparison = "comparison = { stiffness = \"$level\" }\n";
   return text.replace(text.find(comparison), comparison.size(),
                       "comparison = { stiffness = 310.0 }\n");
+}
+
+TEST(TrialSequenceTest, LongLevelsAreEachCutToTheRoomOfACondition) {
+  TrialsDefinition d;
+  read_small(blocks_only(R"([factors]
+material = ["soft silicone with a rough coating", "hard acrylic"]
+tool = ["long steel needle with a bevelled tip", "short needle"]
+[[blocks]]
+name = "one"
+trials = 4
+field = "curl"
+)"),
+             d);
+  TrialSequence sequence(d, taker());
+  std::set<std::string> conditions;
+  while (const auto next = sequence.next()) {
+    EXPECT_LE(next->plan.condition.size(), record::kConditionBytes);
+    conditions.insert(next->plan.condition);
+    sequence.conclude(true, 1.0, true);
+  }
+  EXPECT_THAT(conditions,
+              ElementsAre("hard acrylic, long steel needle with a bevelled tip",
+                          "hard acrylic, short needle",
+                          "soft silicone with a rough coat, long steel needle with a bevell",
+                          "soft silicone with a rough coating, short needle"));
 }
 
 TEST(TrialSequenceTest, CyclesHoldEachCombinationOnceAndProbesKeepApart) {
