@@ -131,12 +131,18 @@ void add_values(const PreviewedTrial& trial, Preview& preview) {
   preview.document.table({"name", "holds in", "value"}, rows, "Values of the names in this trial");
 }
 
-std::string sentence_about(const PreviewedTrial& trial) {
+std::string shown_condition(const TrialsDefinition& d, const std::string& recorded) {
+  const std::map<std::string, std::string> shown = d.shown_conditions();
+  const auto known = shown.find(recorded);
+  return known != shown.end() ? known->second : recorded;
+}
+
+std::string sentence_about(const TrialsDefinition& d, const PreviewedTrial& trial) {
   const protocols::PlannedTrial& plan = trial.next.plan;
   std::string words =
       fmt::format("Trial {} of at most {} in the session: {} {} of block {}, condition {}",
                   trial.number, trial.most, plan.practice ? "practice" : "trial", plan.trial,
-                  plan.block_name, plan.condition);
+                  plan.block_name, shown_condition(d, plan.condition));
   words +=
       trial.next.values.probe.empty() ? "" : fmt::format(", probe {}", trial.next.values.probe);
   words += ".";
@@ -196,9 +202,8 @@ void add_planned_blocks(const protocols::PlannedTrials& planned, analysis::Docum
 }  // namespace
 
 void add_timeline(const TrialsDefinition& d, const PreviewedTrial& trial, Preview& preview) {
-  static_cast<void>(d);
   preview.document.heading("One trial, stage by stage");
-  preview.document.paragraph(sentence_about(trial));
+  preview.document.paragraph(sentence_about(d, trial));
   const std::vector<TimelineBar> bars = bars_of(trial);
   preview.add(timeline_figure(bars.size()), timeline_svg(bars));
   add_stage_table(trial, preview.document);
@@ -247,7 +252,7 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
   for (const protocols::PlannedCount& count : planned.counts) {
     const std::string most = count.open ? "at most " : "";
     std::vector<std::string> row{
-        count.block + (count.practice ? " (practice)" : ""), count.condition,
+        count.block + (count.practice ? " (practice)" : ""), shown_condition(d, count.condition),
         count.probe.empty() ? "none" : count.probe,          fmt::format("{}", count.participants),
         most + number_or_range(count.fewest, count.most),    most + fmt::format("{}", count.all)};
     if (!planned.groups.empty()) {

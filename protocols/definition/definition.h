@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -137,6 +138,9 @@ struct Definition {
     static_cast<void>(held);
     return 0;
   }
+  /// Conditions as sessions record them, and as tables show them; a condition that is not named is
+  /// shown as it is recorded.
+  virtual std::map<std::string, std::string> shown_conditions() const { return {}; }
   /// Bits of DeviceReading::keys while keys are held: functions_of(held), and kPauseBit.
   std::uint32_t bits_of(const std::vector<int>& held) const;
 };

@@ -281,6 +281,7 @@ void add_done(const std::vector<MethodsSession>& sessions, const protocols::Defi
     add_counts(sessions, document);
     return;
   }
+  const std::map<std::string, std::string> shown = d.shown_conditions();
   std::map<std::string, std::array<int, 2>> passes;  // completed, aborted
   std::vector<std::vector<std::string>> rows;
   for (const MethodsSession& session : sessions) {
@@ -293,7 +294,10 @@ void add_done(const std::vector<MethodsSession>& sessions, const protocols::Defi
                     fmt::format("{}", p.done), fmt::format("{}", p.skipped),
                     fmt::format("{}", p.aborted), p.ended_early.empty() ? "–" : p.ended_early});
     for (const record::PassRow& pass : session.passes) {
-      auto& counts = passes[fmt::format("{}{}", pass.practice ? "practice: " : "", pass.condition) +
+      // An import has the order of the definition already.
+      const auto known = session.imported.empty() ? shown.find(pass.condition) : shown.end();
+      const std::string& condition = known != shown.end() ? known->second : pass.condition;
+      auto& counts = passes[fmt::format("{}{}", pass.practice ? "practice: " : "", condition) +
                             "\n" + name_of(pass.phase)];
       ++counts[pass.status == record::PassStatus::kCompleted ? 0 : 1];
     }

@@ -43,22 +43,29 @@ std::string level_of(const TrialsDefinition& d, const trials::TrialsPlan& plan) 
   return !plan.level.empty() ? plan.level : d.tracks.empty() ? "" : d.tracks.front().variable;
 }
 
-/// Takes the columns that are called as the definition's factors and level are.
+/// Takes the columns that are called as the definition's factors and level are. Factors come in the
+/// order of its [factors], so that the levels of a condition do.
 void add_columns_of(const TrialsDefinition& d, const trials::TrialsPlan& plan, const fs::path& file,
                     trials::TrialColumns& columns) {
   const analysis::CsvTable table = analysis::CsvTable::load(file);
-  for (const protocols::Factor& factor : d.order.factors) {
-    if (std::ranges::find(columns.factors, factor.name, &trials::FactorColumn::variable) !=
+  const std::vector<std::string> written = d.order.factors.empty()
+                                               ? std::vector<std::string>()
+                                               : d.root().table("factors").keys_as_written();
+  for (const std::string& factor : written) {
+    if (std::ranges::find(columns.factors, factor, &trials::FactorColumn::variable) !=
         columns.factors.end()) {
       continue;
     }
-    if (!table.has(factor.name)) {
+    if (!table.has(factor)) {
       throw InputError(fmt::format(
           "{}: the definition varies {}, and no column is called so; add --factor {}=COLUMN",
-          file.string(), factor.name, factor.name));
+          file.string(), factor, factor));
     }
-    columns.factors.push_back({factor.name, factor.name});
+    columns.factors.push_back({factor, factor});
   }
+  std::ranges::stable_sort(columns.factors, {}, [&](const trials::FactorColumn& column) {
+    return std::ranges::find(written, column.variable);
+  });
   if (columns.level.empty() && table.has(level_of(d, plan))) {
     columns.level = level_of(d, plan);
   }

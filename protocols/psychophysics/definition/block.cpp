@@ -262,6 +262,29 @@ std::string shown_level(const std::string& formula) {
   return quoted ? formula.substr(1, formula.size() - 2) : formula;
 }
 
+std::vector<std::vector<GivenValue>> crossed(const std::vector<const Factor*>& factors) {
+  std::vector<std::vector<GivenValue>> all{{}};
+  for (const Factor* factor : factors) {
+    std::vector<std::vector<GivenValue>> longer;
+    for (const auto& combination : all) {
+      for (const std::string& level : factor->levels) {
+        longer.push_back(combination);
+        longer.back().push_back({factor->name, level});
+      }
+    }
+    all = std::move(longer);
+  }
+  return all;
+}
+
+std::vector<std::string> levels_of(const std::vector<GivenValue>& values) {
+  std::vector<std::string> levels;
+  for (const GivenValue& value : values) {
+    levels.push_back(shown_level(value.formula));
+  }
+  return levels;
+}
+
 TrialDesign read_trial_design(Table& root, bool procedures) {
   Table design = root.table("design");
   TrialDesign d = trial_design_schema().read(design);

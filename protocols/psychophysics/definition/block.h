@@ -99,5 +99,10 @@ std::string formula_of_value(Table& table, const std::string& key);
 
 /// A level as tables show it: a word without the quotation marks of its formula.
 std::string shown_level(const std::string& formula);
+std::vector<std::string> levels_of(const std::vector<GivenValue>& values);
+
+/// All combinations of the factors' levels, the last factor fastest; one empty combination without
+/// factors.
+std::vector<std::vector<GivenValue>> crossed(const std::vector<const Factor*>& factors);
 
 }  // namespace haptrial::protocols

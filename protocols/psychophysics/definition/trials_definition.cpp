@@ -10,6 +10,7 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/psychometric/definition/expectation.h"
+#include "core/record/rows/condition_label.h"
 #include "protocols/psychophysics/definition/only_seen.h"
 #include "protocols/psychophysics/definition/unmatched_literals.h"
 
@@ -49,6 +50,35 @@ std::vector<const Factor*> TrialsDefinition::varied_by(const Track& track,
     return std::ranges::find(track.by, factor->name) == track.by.end();
   });
   return by;
+}
+
+std::map<std::string, std::string> TrialsDefinition::shown_conditions() const {
+  std::map<std::string, std::string> shown;
+  if (order.factors.empty()) {
+    return shown;
+  }
+  const std::vector<std::string> written = root().table("factors").keys_as_written();
+  const auto place = [&](const GivenValue& value) {
+    return std::ranges::find(written, value.name);
+  };
+  const auto add = [&](const std::vector<const Factor*>& factors) {
+    for (std::vector<GivenValue>& combination : crossed(factors)) {
+      const std::string recorded = record::condition_label(levels_of(combination));
+      std::ranges::sort(combination, {}, place);
+      shown.try_emplace(recorded, fmt::format("{}", fmt::join(levels_of(combination), ", ")));
+    }
+  };
+  for (const Block& block : order.blocks) {
+    const std::vector<const Track*> asked = tracks_in(block);
+    for (const Track* track : asked) {
+      add(varied_by(*track, block));
+    }
+    if (asked.empty()) {
+      add(varied_in(block));
+    }
+  }
+  shown.erase("");  // a trial without a combination has the name of its block
+  return shown;
 }
 
 int TrialsDefinition::combinations(const Track& track, const Block& block) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -76,6 +77,9 @@ struct TrialsDefinition : Definition {
   /// Intervals if there are several, stages, and the answers to all questions in their order.
   std::vector<markers::MarkerMeaning> marker_meanings() const override;
   const sound::CueSet* sounds() const override { return cues.empty() ? nullptr : &cues; }
+  /// Combinations of levels in the order in which [factors] is written; sessions record them in the
+  /// alphabetical order of the factors.
+  std::map<std::string, std::string> shown_conditions() const override;
   std::uint32_t functions_of(const std::vector<int>& held) const override {
     return keys.bits_of(held);
   }

@@ -15,31 +15,6 @@
 namespace haptrial::protocols {
 namespace {
 
-/// All combinations of the factors' levels, the last factor fastest; one empty combination without
-/// factors.
-std::vector<std::vector<GivenValue>> crossed(const std::vector<const Factor*>& factors) {
-  std::vector<std::vector<GivenValue>> all{{}};
-  for (const Factor* factor : factors) {
-    std::vector<std::vector<GivenValue>> longer;
-    for (const auto& combination : all) {
-      for (const std::string& level : factor->levels) {
-        longer.push_back(combination);
-        longer.back().push_back({factor->name, level});
-      }
-    }
-    all = std::move(longer);
-  }
-  return all;
-}
-
-std::vector<std::string> levels_of(const std::vector<GivenValue>& values) {
-  std::vector<std::string> levels;
-  for (const GivenValue& value : values) {
-    levels.push_back(shown_level(value.formula));
-  }
-  return levels;
-}
-
 std::string label_of(const std::vector<GivenValue>& values) {
   return fmt::format("{}", fmt::join(levels_of(values), ", "));
 }

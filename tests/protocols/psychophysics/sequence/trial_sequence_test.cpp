@@ -189,6 +189,34 @@ field = "curl"
                           "soft silicone with a rough coating, short needle"));
 }
 
+TEST(TrialSequenceTest, AConditionIsShownInTheOrderOfTheFactorsAsWritten) {
+  TrialsDefinition d;
+  read_small(blocks_only(R"([factors]
+standard = ["low", "high"]
+comparison = ["low", "high"]
+[[blocks]]
+name = "one"
+trials = 4
+field = "curl"
+)"),
+             d);
+  const std::map<std::string, std::string> shown = d.shown_conditions();
+  TrialSequence sequence(d, taker());
+  std::set<std::string> conditions;
+  while (const auto next = sequence.next()) {
+    std::map<std::string, std::string> levels;
+    for (const GivenValue& value : next->values.values) {
+      levels[value.name] = shown_level(value.formula);
+    }
+    EXPECT_EQ(next->plan.condition, levels.at("comparison") + ", " + levels.at("standard"));
+    EXPECT_EQ(shown.at(next->plan.condition),
+              levels.at("standard") + ", " + levels.at("comparison"));
+    conditions.insert(next->plan.condition);
+    sequence.conclude(true, 1.0, true);
+  }
+  EXPECT_EQ(conditions.size(), 4U);
+}
+
 TEST(TrialSequenceTest, CyclesHoldEachCombinationOnceAndProbesKeepApart) {
   TrialsDefinition d;
   read_small(blocks_only(R"([factors]
