@@ -73,6 +73,11 @@ void add_design_tests(Document& document, const DesignTable& table, const Design
   add_family(document, tests.planned);
   if (tests.sequential) {
     add_looks(document, *tests.sequential);
+  } else if (tests.ends_by_rule) {
+    document.paragraph(
+        "These p values and intervals take the number of participants as fixed beforehand, "
+        "although "
+        "a rule ends the study by another quantity.");
   }
   for (const TestFamily& family : tests.families) {
     add_family(document, family);

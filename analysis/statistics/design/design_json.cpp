@@ -125,6 +125,9 @@ Json to_json(const DesignTests& tests) {
             {tests.planned.name, to_json(tests.planned).at("tests")},
             {"families", families},
             {"left_out", tests.incomplete}};
+  if (tests.ends_by_rule) {
+    json["ends_by_rule"] = true;  // no p value allows for that
+  }
   if (tests.sequential) {
     json["sequential"] = to_json(*tests.sequential);
   }

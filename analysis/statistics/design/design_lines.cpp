@@ -18,12 +18,23 @@ namespace {
 
 constexpr double kAlpha = 0.05;
 
-std::string line_of(const Defined<EffectTest>& effect) {
+/// Ends a line of a study that its rule ends, as no p value but the rule's own allows for that.
+const char* as_if_fixed(const DesignTests& tests) {
+  return tests.ends_by_rule ? "; p and intervals as if the number of participants had been fixed"
+                            : "";
+}
+
+/// The F of two conditions is the square of the t that may decide when the study ends, so that an
+/// effect beside a rule has no verdict of its own.
+std::string line_of(const DesignTests& tests, const Defined<EffectTest>& effect) {
   if (!effect) {
     return "Whether conditions differ is not defined, because " + effect.because() + ".";
   }
-  return fmt::format("Effect of {}: {}; {}", effect->factor,
-                     effect->p < kAlpha ? "significant" : "not shown", effect_result(*effect));
+  const char* verdict = tests.ends_by_rule   ? ""
+                        : effect->p < kAlpha ? "significant; "
+                                             : "not shown; ";
+  return fmt::format("Effect of {}: {}{}{}", effect->factor, verdict, effect_result(*effect),
+                     as_if_fixed(tests));
 }
 
 bool decides(const SequentialResult& rule, const SideTest& test) {
@@ -43,10 +54,7 @@ std::string line_of(const DesignTests& tests, const SideTest& test) {
   if (!test.t || !test.holm) {
     return fmt::format("{}: not defined, because {}", name, test.t.because());
   }
-  const std::string result =
-      side_result(test) + (tests.ends_by_rule
-                               ? "; p and intervals as if the number of participants had been fixed"
-                               : "");
+  const std::string result = side_result(test) + as_if_fixed(tests);
   if (is_significant(test, rule)) {
     return fmt::format("{}: significant; {}", name, result);
   }
@@ -159,7 +167,7 @@ std::vector<std::size_t> rows_with(const CsvTable& table,
 std::vector<std::string> effect_lines(const DesignTests& tests) {
   std::vector<std::string> lines;
   for (const auto& effect : tests.effects) {
-    lines.push_back(line_of(effect));
+    lines.push_back(line_of(tests, effect));
   }
   return lines;
 }
@@ -183,8 +191,8 @@ std::vector<std::string> unplanned_lines(const DesignTests& tests) {
     }
     for (const SideTest& test : family.tests) {
       if (test.holm && *test.holm < kAlpha && !is_planned(tests, test.sides)) {
-        lines.push_back(
-            fmt::format("Not planned, {}: significant; {}", sides_of(test), side_result(test)));
+        lines.push_back(fmt::format("Not planned, {}: significant; {}{}", sides_of(test),
+                                    side_result(test), as_if_fixed(tests)));
       }
     }
   }

@@ -69,6 +69,17 @@ analysis::ScoreParameters scoring_for(const std::filesystem::path& shares,
   return analysis::with_shares_of(shares, std::move(scoring));
 }
 
+/// Marks every test of a study that a rule ends.
+void mark_rule(analysis::StudyResult& study) {
+  study.statistics.tests.ends_by_rule = true;
+  if (study.path) {
+    study.path->tests.ends_by_rule = true;
+  }
+  for (analysis::LearnedOutcome& outcome : study.learned.outcomes) {
+    outcome.tests.ends_by_rule = true;
+  }
+}
+
 analysis::StudyResult analyzed(const AnalysisRequest& request) {
   const StudyFiles& found = request.files;
   const record::SessionInfo& first = found.first;
@@ -85,9 +96,9 @@ analysis::StudyResult analyzed(const AnalysisRequest& request) {
         fmt::format("{}: no session {}holds a completed test pass, so nothing can be scored",
                     request.folder.string(), study.tests.empty() ? "" : "that trains "));
   }
-  study.statistics.tests.ends_by_rule = plan.sequential.has_value();
   analysis::check_plan(study.statistics.table, plan_of(request.planned, request.reference));
   if (plan.sequential) {
+    mark_rule(study);
     study.statistics.tests.sequential = analysis::sequential_result(
         study.statistics.table, analysis::decisive_test(plan), *plan.sequential,
         complete_participants(found.files, definition),

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/design/design_json.h"
 #include "analysis/statistics/design/design_lines.h"
 #include "analysis/statistics/design/wording.h"
 #include "analysis/statistics/variance/repeated_anova.h"
@@ -23,6 +24,8 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 constexpr Resampling kNone{1, "", 0, 1};
 
@@ -310,7 +313,12 @@ TEST(DesignLines, TheRuleOfAStudyDecidesItsTest) {
   plan.tests = {{"a", "b", Tail::kLess}};
   DesignTests tests = design_tests(design_table(made.observations, {"c"}), plan, kNone);
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("significant"));
+  EXPECT_THAT(effect_lines(tests).front(), HasSubstr("Effect of c: significant; F("));
+  EXPECT_THAT(design_json(tests), Not(HasSubstr("ends_by_rule")));
   tests.ends_by_rule = true;  // as the test of another quantity decides
+  EXPECT_THAT(effect_lines(tests).front(), StartsWith("Effect of c: F("));
+  EXPECT_THAT(effect_lines(tests).front(), HasSubstr("had been fixed"));
+  EXPECT_THAT(design_json(tests), HasSubstr("\"ends_by_rule\": true"));
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("significant"));
   EXPECT_THAT(planned_lines(tests).front(), HasSubstr("had been fixed"));
   tests.sequential = SequentialResult{plan.tests.front(), {}, 20, {}, SequentialVerdict::kGoOn};
@@ -447,6 +455,9 @@ TEST(DesignLines, SayWhatATestCannotExcludeAndWhatWasNotPlanned) {
   ASSERT_EQ(unplanned_lines(tests).size(), 1u);
   EXPECT_THAT(unplanned_lines(tests)[0],
               testing::StartsWith("Not planned, a and c: significant; difference "));
+  DesignTests by_rule = tests;
+  by_rule.ends_by_rule = true;
+  EXPECT_THAT(unplanned_lines(by_rule)[0], HasSubstr("had been fixed"));
 }
 
 // Holm's rule over two tests: the smaller p doubled, the larger at least as large.
