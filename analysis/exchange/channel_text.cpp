@@ -6,7 +6,7 @@
 #include <string>
 #include <variant>
 
-#include "core/channel/channel_row.h"
+#include "analysis/quality/channel_quality.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/table/table_description.h"
 
@@ -46,10 +46,7 @@ void write_channel(const record::SessionReader& reader, const record::TableDescr
 
 std::vector<record::EventRow> channel_events(const record::SessionReader& reader, bool messages) {
   std::vector<record::EventRow> events;
-  if (!reader.has(record::table_of<channel::IncidentRow>())) {
-    return events;
-  }
-  for (const channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
+  for (const channel::IncidentRow& row : analysis::channel_incidents(reader)) {
     if (messages || row.what != channel::Incident::kMessage) {
       events.push_back({row.time_ns, fmt::format("channel_{}", channel::name_of(row.what)),
                         fmt::format("{}{}{}{}", row.channel, row.text.empty() ? "" : ": ", row.text,

@@ -192,6 +192,15 @@ Docs channel_docs() {
   return docs_of(table.table());
 }
 
+void add_incidents(ProtocolTable& own, const ExportSession& session,
+                   const record::SessionReader& reader) {
+  RowText row(own.text, Delimited::kCsv);
+  for (const channel::IncidentRow& each : analysis::channel_incidents(reader)) {
+    row.add(session.info.subject).add(session.number).add(each.time_ns).add(each.channel);
+    row.add(channel::name_of(each.what)).add(each.amount).add(each.text).end();
+  }
+}
+
 void add_rows(ProtocolTable& own, const ExportSession& session,
               const record::SessionReader& reader) {
   if (!reader.has(*own.table) || reader.count(*own.table) == 0) {
@@ -199,6 +208,10 @@ void add_rows(ProtocolTable& own, const ExportSession& session,
   }
   if (own.text.empty()) {
     own.text = heading(column_docs(*own.table), Delimited::kCsv);
+  }
+  if (own.table == &record::table_of<channel::IncidentRow>()) {
+    add_incidents(own, session, reader);
+    return;
   }
   std::vector<bool> counts(reader.count(*own.table), true);
   if (own.table == &record::table_of<record::AnswerRow>()) {

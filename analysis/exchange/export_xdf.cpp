@@ -167,7 +167,7 @@ void write_messages(const SessionReader& reader, const analysis::ChannelQuality&
   const std::string name = channel.samples > 0 ? channel.name + "_messages" : channel.name;
   const std::uint32_t stream =
       file.add_stream({name, "Markers", XdfFormat::kString, 0.0, {{"message", ""}}});
-  std::vector<channel::IncidentRow> rows = reader.rows<channel::IncidentRow>();
+  std::vector<channel::IncidentRow> rows = analysis::channel_incidents(reader);
   std::ranges::stable_sort(rows, {}, &channel::IncidentRow::time_ns);
   for (const channel::IncidentRow& row : rows) {
     if (row.what == channel::Incident::kMessage && row.channel == channel.name) {

@@ -6,8 +6,8 @@
 #include <numeric>
 #include <string_view>
 
-#include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -67,6 +67,28 @@ void find_silence(const record::SessionReader& reader, ChannelQuality& quality) 
 
 }  // namespace
 
+std::vector<channel::IncidentRow> channel_incidents(const record::SessionReader& reader) {
+  if (!reader.has(record::table_of<channel::IncidentRow>())) {
+    return {};
+  }
+  constexpr std::size_t kFull = record::kTextBytes - 3;  // bytes, as a cut divides no character
+  std::vector<channel::IncidentRow> whole;
+  std::size_t before = 0;  // bytes of the row before
+  for (channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
+    const std::size_t bytes = row.text.size();
+    const bool goes_on = before >= kFull && bytes > 0 && row.time_ns == whole.back().time_ns &&
+                         row.channel == whole.back().channel && row.what == whole.back().what &&
+                         row.amount == whole.back().amount;
+    if (goes_on) {
+      whole.back().text += row.text;
+    } else {
+      whole.push_back(std::move(row));
+    }
+    before = bytes;
+  }
+  return whole;
+}
+
 double ChannelQuality::rate() const {
   return seconds > silence ? static_cast<double>(samples - 1 - breaks) / (seconds - silence) : 0.0;
 }
@@ -83,7 +105,7 @@ std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader)
     }
   }
   std::ranges::sort(all, {}, &ChannelQuality::name);
-  for (const channel::IncidentRow& row : reader.rows<channel::IncidentRow>()) {
+  for (const channel::IncidentRow& row : channel_incidents(reader)) {
     const auto found = std::ranges::find(all, row.channel, &ChannelQuality::name);
     if (found != all.end()) {
       found->breaks += row.what == channel::Incident::kBack ? 1 : 0;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/channel/channel_row.h"
+
 namespace haptrial::record {
 class SessionReader;
 }
@@ -28,6 +30,10 @@ struct ChannelQuality {
   /// Samples a second while the channel was there; 0 if there are less than two [Hz]
   double rate() const;
 };
+
+/// What befell the channels of a session, each with its whole text, which may fill several rows of
+/// /channel_events; none without channels.
+std::vector<channel::IncidentRow> channel_incidents(const record::SessionReader& reader);
 
 /// The channels of a session, in the order of their names; none without.
 /// @throws InputError when the file is damaged.

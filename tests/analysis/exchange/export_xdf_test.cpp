@@ -171,7 +171,10 @@ TEST_F(ExportXdfTest, AChannelIsAStreamOfDoublesOnTheSessionsClock) {
 TEST_F(ExportXdfTest, WhatAChannelSaidIsAStreamOfMarkers) {
   const channel::ChannelTable stimuli("stimuli", {}, 64);
   using channel::Incident;
+  const std::string start(255, 'a');  // a row has 256 bytes, and a cut divides no character
   const std::vector<channel::IncidentRow> rows{
+      {100'000'000, "stimuli", Incident::kMessage, 0.001, start},
+      {100'000'000, "stimuli", Incident::kMessage, 0.001, "é, which goes on"},
       {500'000'000, "stimuli", Incident::kMessage, 0.001, "cue left"},
       {750'000'000, "stimuli", Incident::kLost, 0.0, "the sender has ended"},
       {250'000'000, "stimuli", Incident::kMessage, 0.001, "fixation"}};
@@ -195,6 +198,7 @@ TEST_F(ExportXdfTest, WhatAChannelSaidIsAStreamOfMarkers) {
     }
     return -1.0;
   };
+  EXPECT_NEAR(time_of(start + "é, which goes on"), 0.1, 1e-9);
   EXPECT_NEAR(time_of("fixation"), 0.25, 1e-9);
   EXPECT_NEAR(time_of("cue left"), 0.5, 1e-9);
   EXPECT_NEAR(time_of("channel_lost: stimuli: the sender has ended"), 0.75, 1e-9);

@@ -26,6 +26,8 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
   const std::vector<channel::IncidentRow> incidents{
       {4'000'000'000, "grip", Incident::kLost, 0.0, "no data come any more"},
       {7'010'000'000, "grip", Incident::kBack, 3.0, ""},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(256, 'w')},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(44, 'w')},
       {7'500'000'000, "grip", Incident::kMessage, 0.0, "warm"}};
   record::SessionInfo info;
   info.subject = "P1";
@@ -41,7 +43,8 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
   EXPECT_NEAR(all[0].rate(), 100.0, 1e-9);
   EXPECT_NEAR(all[0].seconds, 10.0, 1e-9);
   EXPECT_EQ(all[0].losses, 1u);
-  EXPECT_EQ(all[0].messages, 1u);
+  EXPECT_EQ(all[0].messages, 2u);
+  EXPECT_EQ(channel_incidents(reader)[2].text, std::string(300, 'w'));
 }
 
 }  // namespace
