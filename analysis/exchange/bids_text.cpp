@@ -77,9 +77,14 @@ std::string person_column(std::span<const Session> sessions, const char* name,
 const std::set<std::string> kSexes{"male",   "m", "M", "MALE",   "Male",
                                    "female", "f", "F", "FEMALE", "Female",
                                    "other",  "o", "O", "OTHER",  "Other"};
-const std::set<std::string> kHands{"left",         "l", "L", "LEFT",         "Left",
-                                   "right",        "r", "R", "RIGHT",        "Right",
-                                   "ambidextrous", "a", "A", "AMBIDEXTROUS", "Ambidextrous"};
+/// BIDS has another word for people who use both hands.
+std::string bids_hand(const std::string& handedness) {
+  return handedness == "both" ? "ambidextrous" : handedness;
+}
+
+const std::set<std::string> kHands{
+    "both",  "left",         "l", "L", "LEFT",         "Left",        "right", "r", "R", "RIGHT",
+    "Right", "ambidextrous", "a", "A", "AMBIDEXTROUS", "Ambidextrous"};
 
 std::vector<ColumnDoc> participant_docs(std::span<const Session> sessions) {
   return {{"participant_id", "", "the subject's label in this data set"},
@@ -279,7 +284,8 @@ std::string participants_table(std::span<const Session> sessions) {
     const ExportSession& source = session.source;
     if (source.first) {
       const auto& person = source.info.participant;
-      row.add(session.subject).add(source.info.subject).add(person.sex).add(person.handedness);
+      row.add(session.subject).add(source.info.subject).add(person.sex);
+      row.add(bids_hand(person.handedness));
       row.add(person.age_band).add(truth(source.info.simulated));
       row.add(participant_pilots(sessions, session)).end();
     }

@@ -377,7 +377,7 @@ void declare_run_options(CLI::App& app, RunOptions& o) {
   sub->add_flag("--pilot", o.pilot, "Mark the session as a pilot, which analyze leaves out");
   declare_set_option(*sub, o.set);
   sub->add_option("--handedness", o.person.handedness,
-                  "Participant's handedness: left, right or both");
+                  "Participant's handedness: left, right, or both (ambidextrous)");
   sub->add_option("--age-band", o.person.age_band, "Participant's age band, such as 18-25");
   sub->add_option("--sex", o.person.sex, "Participant's sex");
   sub->add_option("--consent", o.person.consent_confirmed,

@@ -208,7 +208,7 @@ void check_run_options(const RunOptions& options) {
         "--set is given without --pilot; sessions of a study have the keys of its definition");
   }
   check_link(options);
-  const std::vector<std::string> hands{"left", "right", "both"};
+  const std::vector<std::string> hands{"left", "right", "both", "ambidextrous"};
   const std::string& hand = options.person.handedness;
   if (!hand.empty() && std::ranges::find(hands, hand) == hands.end()) {
     throw InputError(not_allowed("--handedness", fmt::format("'{}'", hand), hands));

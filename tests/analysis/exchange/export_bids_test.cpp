@@ -316,7 +316,7 @@ TEST_F(ExportBidsTest, ASessionWithoutPassesIsListed) {
 
 TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {
   SmallSession session;
-  session.person = {"P01", "both", "18-25", "male", "2026-11-20", "knows the experimenter"};
+  session.person = {"P01", "mixed", "18-25", "male", "2026-11-20", "knows the experimenter"};
   write("a.h5", session);
   run();
   const std::string found = "grep -rlE 'knows the|2026-11-20\\b[^T]'" + quoted(folder_ / "out");
@@ -324,6 +324,20 @@ TEST_F(ExportBidsTest, WhatAParticipantSaidStaysOut) {
   // A hand that BIDS has no word for goes into a column of our own.
   EXPECT_THAT(file_text(folder_ / "out/participants.tsv"),
               HasSubstr("sex\treported_handedness\tage_band"));
+}
+
+TEST_F(ExportBidsTest, BothHandsHaveTheWordOfBids) {
+  SmallSession session;
+  session.person = {"P01", "both", "18-25", "male", "", ""};
+  write("a.h5", session);
+  session = {.subject = "P02"};
+  session.person = {"P02", "left", "18-25", "female", "", ""};
+  write("b.h5", session);
+  run();
+  const std::string people = file_text(folder_ / "out/participants.tsv");
+  EXPECT_THAT(people, HasSubstr("sex\thandedness\tage_band"));
+  EXPECT_THAT(people, HasSubstr("\tmale\tambidextrous\t18-25"));
+  EXPECT_THAT(people, HasSubstr("\tfemale\tleft\t18-25"));
 }
 
 TEST_F(ExportBidsTest, BadInputGetsASentenceAndLeavesNothing) {
