@@ -34,9 +34,14 @@ std::string replacement_of(const std::string& subject,
   return free;
 }
 
+std::optional<int> recorded_number(const record::SessionInfo& info) {
+  return info.participant_number != 0 && info.device != kNoDevice
+             ? std::optional(static_cast<int>(info.participant_number))
+             : std::nullopt;
+}
+
 int number_of_session(const record::SessionInfo& info) {
-  return info.participant_number != 0 ? static_cast<int>(info.participant_number)
-                                      : number_of_subject(info.subject);
+  return recorded_number(info).value_or(number_of_subject(info.subject));
 }
 
 }  // namespace haptrial::experiments

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace haptrial::record {
@@ -25,8 +26,15 @@ inline constexpr const char* kExcludedFolder = "excluded";
 std::string replacement_of(const std::string& subject,
                            const std::function<bool(const std::string&)>& is_taken);
 
-/// The number by which a session's orders were chosen: the recorded one, or in an older file that
-/// of the identifier.
+/// Device of imported sessions.
+inline constexpr const char* kNoDevice = "none";
+
+/// The recorded number by which a session's orders were chosen; none in older files, and none of
+/// imported sessions, whose number is the participant's place in the tables.
+std::optional<int> recorded_number(const record::SessionInfo& info);
+
+/// The number by which a session's orders were chosen: the recorded one, else that of the
+/// identifier.
 int number_of_session(const record::SessionInfo& info);
 
 }  // namespace haptrial::experiments

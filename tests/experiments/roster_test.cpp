@@ -405,6 +405,17 @@ TEST_F(RosterTest, AShellReadsTheFoldersOfTheCommandAsTheyAre) {
   EXPECT_TRUE(fs::exists(sessions_ / "P01-session-1.h5")) << command;
 }
 
+/// The number of an imported session is its place in the tables, by which nobody chose orders.
+TEST(SessionNumberTest, IsTheRecordedOneButThatOfAnImport) {
+  record::SessionInfo info;
+  info.subject = "P04";
+  EXPECT_EQ(number_of_session(info), 4);
+  info.participant_number = 1;
+  EXPECT_EQ(number_of_session(info), 1);
+  info.device = kNoDevice;
+  EXPECT_EQ(number_of_session(info), 4);
+}
+
 TEST_F(RosterTest, ACopyIsNotCountedAmongTheTimesOfSessions) {
   record("P01", 1);
   fs::copy_file(sessions_ / "P01-session-1.h5", sessions_ / "P01-session-1.recovered.h5");

@@ -256,10 +256,9 @@ std::optional<int> recorded_number(const RunOptions& options, const fs::path& ow
     sessions.insert(sessions.begin(), {partial, record::SessionReader(partial).info()});
   }
   const auto at = std::ranges::find_if(sessions, [&](const EarlierSession& each) {
-    return each.info.subject == options.subject && each.info.participant_number != 0;
+    return each.info.subject == options.subject && recorded_number(each.info);
   });
-  return at != sessions.end() ? std::optional(static_cast<int>(at->info.participant_number))
-                              : std::nullopt;
+  return at != sessions.end() ? recorded_number(at->info) : std::nullopt;
 }
 
 std::string check_study(const RunOptions& options, const protocols::Protocol& protocol,

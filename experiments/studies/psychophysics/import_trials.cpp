@@ -160,7 +160,7 @@ record::SessionInfo info_of(const TrialsDefinition& d, const trials::ImportedTri
   info.definition = d.text;
   info.definition_name = d.file_name;
   info.subject = info.participant.identifier = first.participant;
-  info.device = "none";
+  info.device = kNoDevice;
   info.clock = "real";
   info.rate = d.rate;
   info.start_utc = order.start_utc;
