@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -403,6 +404,25 @@ TEST_F(RosterTest, AShellReadsTheFoldersOfTheCommandAsTheyAre) {
   const auto done = test::run_command(command);
   EXPECT_EQ(done.status, 0) << command << "\n" << done.errors;
   EXPECT_TRUE(fs::exists(sessions_ / "P01-session-1.h5")) << command;
+}
+
+TEST_F(RosterTest, AReplacementIsNamedWithTheNumberOfTheRecording) {
+  std::string one_group = kGroups;
+  const std::string groups = "[groups]\nleft = 2\nright = 4\n";
+  test::write_text(definition_, one_group.erase(one_group.find(groups), groups.size()));
+  const std::string run = "run " + quoted(definition_) + " --out " + quoted(sessions_);
+  const std::string command = "roster " + quoted(definition_) + " " + quoted(sessions_);
+  const std::map<std::string, std::string> numbered{
+      {"VPx --participant 2", "such as VPxb --participant 2, which has the same number"},
+      {"P05 --participant 3", "such as Pb05 --participant 3, which has the same number"},
+      {"P04", "such as Pb04, which has the same number"}};
+  for (const auto& [subject, proposed] : numbered) {
+    const std::string again = run + " --session 1 --subject " + subject;
+    ASSERT_EQ(haptrial(again).status, 0) << subject;
+    const std::string name = subject.substr(0, 3);
+    ASSERT_EQ(haptrial(command + " --exclude " + name + " --because ill").status, 0) << subject;
+    EXPECT_THAT(haptrial(again).errors, HasSubstr(proposed));
+  }
 }
 
 /// The number of an imported session is its place in the tables, by which nobody chose orders.

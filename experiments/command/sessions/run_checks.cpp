@@ -178,13 +178,16 @@ void refuse_excluded(const RunOptions& options) {
     return;
   }
   const std::string file = excluded->file.string();
+  const int number = number_of_session(excluded->info);
   std::ranges::copy(earlier_sessions(options.out, false, {}), std::back_inserter(known));
   const std::string free = replacement_of(
       options.subject, [&](const std::string& name) { return of(name) != known.end(); });
-  throw InputError(
-      fmt::format("--subject is '{}', and {} is of an excluded participant with that identifier; "
-                  "choose another one, such as {}, which has the same number",
-                  options.subject, file, free));
+  throw InputError(fmt::format(
+      "--subject is '{}', and {} is of an excluded participant with that identifier; "
+      "choose another one, such as {}{}, which has the same number",
+      options.subject, file, free,
+      number > 0 && number != number_of_subject(free) ? fmt::format(" --participant {}", number)
+                                                      : ""));
 }
 
 /// A recording plays the hand back, which answers by place, and silence; nobody presses its keys,
