@@ -47,10 +47,13 @@ void write_channel(const record::SessionReader& reader, const record::TableDescr
 std::vector<record::EventRow> channel_events(const record::SessionReader& reader, bool messages) {
   std::vector<record::EventRow> events;
   for (const channel::IncidentRow& row : analysis::channel_incidents(reader)) {
-    if (messages || row.what != channel::Incident::kMessage) {
+    const bool message = row.what == channel::Incident::kMessage;
+    if (messages || !message) {
+      // The amount of a message is how far its time may be wrong, no part of what was said.
+      const bool amount = row.amount != 0.0 && !message;
       events.push_back({row.time_ns, fmt::format("channel_{}", channel::name_of(row.what)),
                         fmt::format("{}{}{}{}", row.channel, row.text.empty() ? "" : ": ", row.text,
-                                    row.amount == 0.0 ? "" : fmt::format(" ({:g})", row.amount))});
+                                    amount ? fmt::format(" ({:g})", row.amount) : "")});
     }
   }
   return events;

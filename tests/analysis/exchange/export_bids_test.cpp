@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <span>
 #include <vector>
 
 #include "analysis/exchange/bids_label.h"
@@ -162,6 +163,10 @@ TEST_F(ExportBidsTest, AfterASuspensionSamplesOfChannelsStandBesideTheEvents) {
   rows[1].time_ns = 2'500'000'000;
   rows[1].sample = 1;
   writer.add(record::Rows(grip.table(), rows.data(), rows.size()));
+  const std::vector<channel::IncidentRow> incidents{
+      {600'000'000, "grip", channel::Incident::kMessage, 0.001, "squeeze"},
+      {700'000'000, "grip", channel::Incident::kGap, 3.0, ""}};
+  writer.add(std::span<const channel::IncidentRow>(incidents));
   writer.set_timing({}, {1000, 0, 0});
   writer.close();
   files_ = {folder_ / "a.h5"};
@@ -170,6 +175,11 @@ TEST_F(ExportBidsTest, AfterASuspensionSamplesOfChannelsStandBesideTheEvents) {
       folder_ / "out/sub-P01/beh/sub-P01_task-smallstudy_recording-grip_physio.tsv.gz";
   ASSERT_EQ(shell("zcat" + quoted(recording) + " | cut -f 1,3"), 0) << output_;
   EXPECT_EQ(output_, "0.5\t500000000\n1.5\t2500000000\n");
+  const std::string events =
+      file_text(folder_ / "out/sub-P01/beh/sub-P01_task-smallstudy_events.tsv");
+  EXPECT_THAT(events, HasSubstr("\tchannel_message\tgrip: squeeze"));
+  EXPECT_THAT(events, Not(HasSubstr("0.001")));
+  EXPECT_THAT(events, HasSubstr("\tchannel_gap\tgrip (3)"));
 }
 
 TEST_F(ExportBidsTest, TheOfficialValidatorFindsNoErrors) {
