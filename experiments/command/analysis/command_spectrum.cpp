@@ -155,9 +155,11 @@ sound::Recording read_channel(const SpectrumOptions& options) {
   const int count = static_cast<int>(channels.size());
   const int channel = options.channel == 0 && count == 1 ? 1 : options.channel;
   if (channel < 1 || channel > count) {
-    throw InputError(fmt::format("{}: has {}; --channel is {}; allowed: 1 to {}", options.file,
-                                 counted(channels.size(), "channel", "channels"), options.channel,
-                                 count));
+    const std::string has =
+        fmt::format("{}: has {}", options.file, counted(channels.size(), "channel", "channels"));
+    throw InputError(
+        channel == 0 ? fmt::format("{}; add --channel, 1 to {}, that of the sensor", has, count)
+                     : fmt::format("{}; --channel is {}; allowed: 1 to {}", has, channel, count));
   }
   return std::move(channels[static_cast<std::size_t>(channel - 1)]);
 }
