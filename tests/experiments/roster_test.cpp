@@ -63,13 +63,14 @@ class RosterTest : public testing::Test {
     fs::create_directory(sessions_);
   }
 
-  void record(const std::string& subject, int session, bool pilot = false,
-              std::uint64_t seed = 1) const {
+  /// @param number  of the participant; 0: that of the identifier
+  void record(const std::string& subject, int session, bool pilot = false, std::uint64_t seed = 1,
+              int number = 0) const {
     SessionRequest request;
     request.protocol = &experiment_.study->protocol();
     request.definition = experiment_.definition.get();
     request.subject = subject;
-    request.participant = number_of_subject(subject) - 1;
+    request.participant = (number > 0 ? number : number_of_subject(subject)) - 1;
     request.session = session;
     request.seed = seed;
     request.pilot = pilot;
@@ -404,6 +405,16 @@ TEST_F(RosterTest, AShellReadsTheFoldersOfTheCommandAsTheyAre) {
   const auto done = test::run_command(command);
   EXPECT_EQ(done.status, 0) << command << "\n" << done.errors;
   EXPECT_TRUE(fs::exists(sessions_ / "P01-session-1.h5")) << command;
+}
+
+TEST_F(RosterTest, ANumberOfAnotherGroupIsRefusedWithWhereItIsFrom) {
+  record("P05", 1, false, 1, 2);
+  const std::string run =
+      "run " + quoted(definition_) + " --out " + quoted(sessions_) + " --subject P05 --session 2";
+  EXPECT_THAT(haptrial(run).errors,
+              HasSubstr("the participant's earlier session has the number 2, a number of left"));
+  EXPECT_THAT(haptrial(run + " --participant 1").errors,
+              HasSubstr("--participant is 1, a number of left, but P05 is of right"));
 }
 
 TEST_F(RosterTest, AReplacementIsNamedWithTheNumberOfTheRecording) {

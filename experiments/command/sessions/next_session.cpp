@@ -180,24 +180,26 @@ std::string chosen(RunOptions& options, const Experiment& experiment) {
 
 /// The analysis knows a participant's group by the identifier.
 void check_number_of_group(const RunOptions& options, const protocols::Definition& d,
-                           const std::string& group) {
+                           const std::string& group, bool recorded) {
   const std::string own = protocols::group_of(d.groups, options.subject);
   if (own != group) {
     throw InputError(fmt::format(
-        "--participant is {}, a number of {}, but {} is of {} by its identifier, which the "
-        "analysis goes by; allowed: a number of {}",
+        "{} {}, a number of {}, but {} is of {} by its identifier, which the "
+        "analysis goes by; allowed: --participant with a number of {}",
+        recorded ? "the participant's earlier session has the number" : "--participant is",
         *options.participant, group.empty() ? "no group" : group, options.subject, own, own));
   }
 }
 
 /// A session to which the participant's group does not come, or in which a tutor leads and there
 /// is none.
-void check_place(const RunOptions& options, const protocols::Definition& d) {
+/// @param recorded  whether the participant's number is that of an earlier session
+void check_place(const RunOptions& options, const protocols::Definition& d, bool recorded) {
   const int session = options.session.value_or(1);
   const int number = options.participant.value_or(number_of_subject(options.subject));
   const std::string group = protocols::group_of(d.groups, number - 1);
   if (options.participant && d.groups.size() > 1 && !options.pilot) {
-    check_number_of_group(options, d, group);
+    check_number_of_group(options, d, group, recorded);
   }
   if (!options.pilot && !d.comes(session, group)) {
     throw InputError(
@@ -225,10 +227,11 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
     checked_session(*options.session, d);
   }
   std::string words = chosen(options, experiment);
-  if (!options.participant) {
+  const bool recorded = !options.participant;
+  if (recorded) {
     options.participant = recorded_number(options, session_file(options, d));
   }
-  check_place(options, d);
+  check_place(options, d, recorded);
   if (options.case_name.empty() && has_cases(experiment)) {
     choose_case(options, experiment);
   }
