@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
-#include <numeric>
+#include <map>
+#include <set>
 #include <string_view>
 
 #include "core/record/read/session_reader.h"
@@ -47,22 +47,28 @@ ChannelQuality quality_of(const record::SessionReader& reader, const std::string
   return quality;
 }
 
-/// The longest intervals between samples are those of the breaks.
-void find_silence(const record::SessionReader& reader, ChannelQuality& quality) {
-  quality.breaks = std::min(quality.breaks, quality.samples > 1 ? quality.samples - 2 : 0);
-  if (quality.breaks == 0) {
+/// Finds the intervals between samples in which the channel was lost. A loss before the first
+/// sample or after the last is in none of them.
+/// @param losses  their times
+void find_silence(const record::SessionReader& reader, const std::vector<std::int64_t>& losses,
+                  ChannelQuality& quality) {
+  if (losses.empty() || quality.samples < 2) {
     return;
   }
   const auto table = reader.description(std::string(kPrefix) + quality.name);
   const std::vector<std::int64_t> times = reader.integers(*table, "time_ns", 0, quality.samples);
-  std::vector<std::int64_t> intervals;
-  for (std::size_t i = 1; i < times.size(); ++i) {
-    intervals.push_back(times[i] - times[i - 1]);
+  std::set<std::size_t> breaks;  // by the sample that ends them
+  for (const std::int64_t loss : losses) {
+    breaks.insert(static_cast<std::size_t>(std::ranges::upper_bound(times, loss) - times.begin()));
   }
-  const auto longest = intervals.begin() + static_cast<std::ptrdiff_t>(quality.breaks);
-  std::ranges::nth_element(intervals, longest, std::greater{});
-  quality.silence =
-      1e-9 * static_cast<double>(std::accumulate(intervals.begin(), longest, std::int64_t{0}));
+  breaks.erase(0);
+  breaks.erase(times.size());
+  std::int64_t silence = 0;
+  for (const std::size_t i : breaks) {
+    silence += times[i] - times[i - 1];
+  }
+  quality.breaks = breaks.size();
+  quality.silence = 1e-9 * static_cast<double>(silence);
 }
 
 }  // namespace
@@ -105,17 +111,20 @@ std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader)
     }
   }
   std::ranges::sort(all, {}, &ChannelQuality::name);
+  std::map<std::string, std::vector<std::int64_t>> losses;  // their times, by channel
   for (const channel::IncidentRow& row : channel_incidents(reader)) {
     const auto found = std::ranges::find(all, row.channel, &ChannelQuality::name);
     if (found != all.end()) {
-      found->breaks += row.what == channel::Incident::kBack ? 1 : 0;
       found->losses += row.what == channel::Incident::kLost ? 1 : 0;
       found->clock_steps += row.what == channel::Incident::kClockStep ? 1 : 0;
       found->messages += row.what == channel::Incident::kMessage ? 1 : 0;
     }
+    if (row.what == channel::Incident::kLost) {
+      losses[row.channel].push_back(row.time_ns);
+    }
   }
   for (ChannelQuality& quality : all) {
-    find_silence(reader, quality);
+    find_silence(reader, losses[quality.name], quality);
   }
   return all;
 }

@@ -22,8 +22,8 @@ struct ChannelQuality {
   std::uint64_t messages{0};        // texts that the instrument gave
   double first{0.0};                // time of the first sample, since the session's first tick [s]
   double seconds{0.0};              // from the first sample to the last
-  std::uint64_t breaks{0};          // times that the channel was lost and came back between them
-  double silence{0.0};              // of these, from sample to sample [s]
+  std::uint64_t breaks{0};          // intervals between samples in which the channel was lost
+  double silence{0.0};              // sum of these intervals [s]
   double uncertainty{0.0};          // of the samples' times, median [s]
   double largest_uncertainty{0.0};  // [s]
 

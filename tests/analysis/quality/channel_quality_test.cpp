@@ -23,7 +23,12 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
     rows[i].sample = i;
     rows[i].time_ns = 10'000'000 * static_cast<std::int64_t>(i) + (i > 300 ? 4'000'000'000 : 0);
   }
+  // Before the first sample, in the silence, and while samples go on.
   const std::vector<channel::IncidentRow> incidents{
+      {-2'000'000'000, "grip", Incident::kLost, 0.0, "no connection"},
+      {-500'000'000, "grip", Incident::kBack, 1.5, ""},
+      {8'503'000'000, "grip", Incident::kLost, 0.0, "no numbers come any more"},
+      {8'703'000'000, "grip", Incident::kBack, 0.2, ""},
       {4'000'000'000, "grip", Incident::kLost, 0.0, "no data come any more"},
       {7'010'000'000, "grip", Incident::kBack, 3.0, ""},
       {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(256, 'w')},
@@ -42,9 +47,10 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
   ASSERT_EQ(all.size(), 1u);
   EXPECT_NEAR(all[0].rate(), 100.0, 1e-9);
   EXPECT_NEAR(all[0].seconds, 10.0, 1e-9);
-  EXPECT_EQ(all[0].losses, 1u);
+  EXPECT_NEAR(all[0].silence, 4.01 + 0.01, 1e-9);
+  EXPECT_EQ(all[0].losses, 3u);
   EXPECT_EQ(all[0].messages, 2u);
-  EXPECT_EQ(channel_incidents(reader)[2].text, std::string(300, 'w'));
+  EXPECT_EQ(channel_incidents(reader)[6].text, std::string(300, 'w'));
 }
 
 }  // namespace
