@@ -252,7 +252,7 @@ std::string readme(std::span<const Session> sessions, double motion) {
                          "                   (picked, not filtered), and the events again\n",
                          motion)
                    : "";
-  const char* force = targets ? " The learnt force points down\nand is given as a magnitude." : "";
+  const char* force = targets ? "\nThe learnt force points down and is given as a magnitude." : "";
   text += fmt::format(
       "{}: a force-feedback experiment, exported from session files of haptrial.\n\n"
       "beh/*_events.tsv   {}\n"
@@ -266,10 +266,10 @@ std::string readme(std::span<const Session> sessions, double motion) {
       "Row k of a recording is tick k after the one of StartTime, also where the session file\n"
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
       "the clock read. A recording of a channel begins with the onset of each sample on the time\n"
-      "base of the events; its time_ns is the clock's. World frame: origin at the centre of the "
-      "device's workspace, x to the\n"
-      "participant's right, y up, z towards the participant.{} Reals have 32 bits,\n"
-      "as in the session files. Left out on purpose: consent and free notes about participants.\n"
+      "base of the events; its time_ns is the clock's. World frame: origin at the centre of the\n"
+      "device's workspace, x to the participant's right, y up, z towards the participant.{}\n"
+      "Reals have 32 bits, as in the session files. Left out on purpose: consent and free notes\n"
+      "about participants.\n"
       "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
       "Recordings\n"
       "of pilot sessions have Pilot = true in the .json beside them.\n",

@@ -31,7 +31,7 @@ struct ChannelQuality {
   double rate() const;
 };
 
-/// What befell the channels of a session, each with its whole text, which may fill several rows of
+/// Incidents of a session's channels, each with its whole text, which may fill several rows of
 /// /channel_events; none without channels.
 std::vector<channel::IncidentRow> channel_incidents(const record::SessionReader& reader);
 

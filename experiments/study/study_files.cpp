@@ -269,6 +269,31 @@ std::string remark_on_pilots(const Sorted& sorted, Pilots pilots) {
                                              names_of(sorted.pilots));
 }
 
+/// The number of participants that a definition plans; 0 if it does not say so.
+int planned_participants(const std::string& definition) {
+  static const std::vector<std::string> kKey{"design.participants"};
+  try {
+    const auto values = definition_values(definition, kKey);
+    return values.empty() ? 0 : std::stoi(values.begin()->second);
+  } catch (const std::exception&) {
+    return 0;
+  }
+}
+
+/// Facts of the file whose definition plans most participants, the first of several: a study may
+/// take further ones, whose groups the definitions before do not know.
+record::SessionInfo largest_plan(const std::vector<fs::path>& files) {
+  record::SessionInfo largest = record::SessionReader(files.front()).info();
+  for (const fs::path& file : files) {
+    record::SessionInfo info = record::SessionReader(file).info();
+    if (info.definition != largest.definition &&
+        planned_participants(info.definition) > planned_participants(largest.definition)) {
+      largest = std::move(info);
+    }
+  }
+  return largest;
+}
+
 }  // namespace
 
 std::vector<std::size_t> files_that_stay(const std::vector<SessionCopy>& files) {
@@ -343,36 +368,11 @@ std::vector<fs::path> files_of_one_study(const fs::path& folder,
   return files;
 }
 
-/// As many as a definition plans; 0 if it does not say so.
-static int planned_participants(const std::string& definition) {
-  static const std::vector<std::string> kKey{"design.participants"};
-  try {
-    const auto values = definition_values(definition, kKey);
-    return values.empty() ? 0 : std::stoi(values.begin()->second);
-  } catch (const std::exception&) {
-    return 0;
-  }
-}
-
-/// What the first file says, or the first of those with the most participants: a study may take
-/// further ones, whose groups the definitions before do not know.
-static record::SessionInfo first_of(const std::vector<fs::path>& files) {
-  record::SessionInfo first = record::SessionReader(files.front()).info();
-  for (const fs::path& file : files) {
-    record::SessionInfo info = record::SessionReader(file).info();
-    if (info.definition != first.definition &&
-        planned_participants(info.definition) > planned_participants(first.definition)) {
-      first = std::move(info);
-    }
-  }
-  return first;
-}
-
 StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& protocol_of) {
   const Sorted sorted = sorted_files(folder);
   StudyFiles study;
   study.files = taken(sorted, folder, pilots);
-  study.first = first_of(study.files);
+  study.first = largest_plan(study.files);
   study.remarks = remarks_on_names(study.files);
   if (const std::string remark = remark_on_pilots(sorted, pilots); !remark.empty()) {
     study.remarks.push_back(remark);

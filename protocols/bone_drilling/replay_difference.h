@@ -18,11 +18,11 @@ namespace haptrial::protocols {
 std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
                        std::span<const bone::EmptiedIn> emptied);
 
-/// What tore on a tick, to the bit.
+/// The tissue that tore on a tick, to the bit.
 std::string difference(std::uint64_t sequence, std::span<const record::TearRow> recorded,
                        std::span<const bone::Tear> torn);
 
-/// Where the pieces of a tick's rows lie, to the bit.
+/// The places of the pieces of a tick's rows, to the bit.
 std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
                        const bone::Simulator& simulator);
 

@@ -256,7 +256,8 @@ TEST(ContactSheet, PutsEveryPictureInItsPlace) {
   EXPECT_THROW(contact_sheet({}, 2, plain(1, 6)), std::invalid_argument);
 }
 
-/// Who has a number keeps the group, and further ones share the groups out as they are stated.
+/// A participant with a number keeps the group, and further ones share the groups out as they are
+/// stated.
 TEST(StudyGroups, TakeFurtherParticipantsInTurn) {
   const auto groups_of = [](int participants) {
     Table root = Table::parse("[groups]\ntrained = 4\ncontrol = 2\n", "d.toml");

@@ -36,7 +36,7 @@ class RegionMap {
 ///
 ///     f = min(k p, f_max) Σ (p_b / p)^7 ∇φ(c_b) / n,   p^8 = Σ p_b^8 / n
 ///
-/// That is min(k p, f_max) ∇φ of one ball, or of balls that are equally deep. If a burr lies
+/// One ball, or balls that are equally deep, have the force min(k p, f_max) ∇φ. If a burr lies
 /// between two sides of a structure, the force goes over from the one ball to the other without a
 /// step; one ball of n alone has n^(-1/8) of the depth.
 ///

@@ -229,8 +229,7 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
   if (plan.kind == trials::AnalysisKind::kAdjustment && trials_of(d).tracks.empty()) {
     warnings.emplace_back(
         "analysis.kind is \"adjustment\", whose settings are the levels of procedures, and there "
-        "is "
-        "none, so that the report has no setting; add [procedure] with kind = \"adjustment\"");
+        "is none, so that the report has no setting; add [procedure] with kind = \"adjustment\"");
   }
   if (needs_judged_answers(plan) && !judges_answers(trials_of(d), plan)) {
     warnings.push_back(fmt::format(
