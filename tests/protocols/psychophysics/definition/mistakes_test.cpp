@@ -71,6 +71,15 @@ TEST(TrialMistakesTest, MistakesOfFormulas) {
       Contains(AllOf(HasSubstr("variables.a"), HasSubstr("depends on itself"))));
 }
 
+TEST(TrialMistakesTest, ALevelIsAsLongAsAFileHasRoomFor) {
+  const auto problems = [](std::size_t bytes) {
+    return problems_of_trials(small_trials(
+        kSmallStaircase, "[factors]\ntool = [\"" + std::string(bytes, 'x') + "\", \"needle\"]\n"));
+  };
+  EXPECT_THAT(problems(64), IsEmpty());
+  EXPECT_THAT(problems(65), Contains(HasSubstr("allowed: words of at most 64 bytes")));
+}
+
 TEST(TrialMistakesTest, ATrackHasRoomForItsLevels) {
   const std::string factors = R"([factors]
 material = ["soft silicone with a rough coating", "hard acrylic"]
