@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <map>
 
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"
@@ -131,8 +132,9 @@ void add_values(const PreviewedTrial& trial, Preview& preview) {
   preview.document.table({"name", "holds in", "value"}, rows, "Values of the names in this trial");
 }
 
-std::string shown_condition(const TrialsDefinition& d, const std::string& recorded) {
-  const std::map<std::string, std::string> shown = d.shown_conditions();
+/// @param shown  TrialsDefinition::shown_conditions()
+std::string shown_condition(const std::map<std::string, std::string>& shown,
+                            const std::string& recorded) {
   const auto known = shown.find(recorded);
   return known != shown.end() ? known->second : recorded;
 }
@@ -142,7 +144,7 @@ std::string sentence_about(const TrialsDefinition& d, const PreviewedTrial& tria
   std::string words =
       fmt::format("Trial {} of at most {} in the session: {} {} of block {}, condition {}",
                   trial.number, trial.most, plan.practice ? "practice" : "trial", plan.trial,
-                  plan.block_name, shown_condition(d, plan.condition));
+                  plan.block_name, shown_condition(d.shown_conditions(), plan.condition));
   words +=
       trial.next.values.probe.empty() ? "" : fmt::format(", probe {}", trial.next.values.probe);
   words += ".";
@@ -248,13 +250,16 @@ void add_planned(const TrialsDefinition& d, const protocols::PlannedTrials& plan
   if (sessions) {
     heading.insert(heading.begin(), "session");
   }
+  const std::map<std::string, std::string> shown = d.shown_conditions();
   std::vector<std::vector<std::string>> rows;
   for (const protocols::PlannedCount& count : planned.counts) {
     const std::string most = count.open ? "at most " : "";
-    std::vector<std::string> row{
-        count.block + (count.practice ? " (practice)" : ""), shown_condition(d, count.condition),
-        count.probe.empty() ? "none" : count.probe,          fmt::format("{}", count.participants),
-        most + number_or_range(count.fewest, count.most),    most + fmt::format("{}", count.all)};
+    std::vector<std::string> row{count.block + (count.practice ? " (practice)" : ""),
+                                 shown_condition(shown, count.condition),
+                                 count.probe.empty() ? "none" : count.probe,
+                                 fmt::format("{}", count.participants),
+                                 most + number_or_range(count.fewest, count.most),
+                                 most + fmt::format("{}", count.all)};
     if (!planned.groups.empty()) {
       row.insert(row.begin(), count.group);
     }
