@@ -14,6 +14,7 @@ namespace haptrial {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// shape_recognition with four answers in place of two; briefer.
 std::string four_shapes() {
@@ -98,6 +99,26 @@ TEST_F(IdentificationCommandTest, DPrimeIsThatOfTheTask) {
                 *analysis::task_d_prime(analysis::DiscriminationTask::kOddity, share, 3), 1e-9);
   }
   EXPECT_THAT(test::read_text(folder_ / "study/report.html"), HasSubstr("the odd one of three"));
+}
+
+/// Two things that are felt one after the other may be two stages of one interval.
+TEST_F(IdentificationCommandTest, StagesThatMayPresentTwoStimuliNeedATask) {
+  const auto validated = [&](const std::string& rest, const std::string& task) {
+    std::string text =
+        test::read_text(test::shipped_definition().parent_path() / "shape_recognition.toml");
+    const std::string kind = "kind = \"detection\"", fields = "fields = [\"guide\"]\n";
+    text.replace(text.find(fields), fields.size(), rest);
+    text.replace(text.find(kind), kind.size(), "kind = \"identification\"" + task);
+    test::write_text(folder_ / "two.toml", text);
+    const auto result = run("haptrial validate two.toml");
+    EXPECT_EQ(result.status, 0) << result.errors;
+    return result.output + result.errors;
+  };
+  const std::string warning = "stages of a trial have different fields";
+  EXPECT_THAT(validated("fields = \"guide\"\n", ""), HasSubstr(warning));
+  EXPECT_THAT(validated("", ""), Not(HasSubstr(warning)));
+  EXPECT_THAT(validated("fields = \"guide\"\n", "\ntask = \"one interval\""),
+              Not(HasSubstr(warning)));
 }
 
 TEST_F(IdentificationCommandTest, MistakesOfADefinitionGetASentence) {

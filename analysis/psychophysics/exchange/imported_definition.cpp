@@ -150,6 +150,12 @@ std::string by_line(const ImportedStudy& study) {
   return fmt::format("by = [{}]\n", fmt::join(names, ", "));
 }
 
+/// Whether the distance of two stimuli depends on how many of them a trial presented.
+bool identifies_two(const ImportedStudy& study, const std::string& kind) {
+  const std::size_t answers = answers_of(study).size();
+  return kind == "identification" && answers > 0 && answers <= 2;
+}
+
 std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& analysis,
                            const std::string& kind) {
   std::string text = fmt::format("\n[analysis]\nkind = {}\n", toml_text(kind));
@@ -161,6 +167,9 @@ std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& a
   }
   if (kind == "detection" && !study.columns.factors.empty()) {
     text += by_line(study);  // other kinds compare the factors without it
+  }
+  if (identifies_two(study, kind)) {
+    text += "task = \"one interval\"  # \"forced choice\" if a trial presented both stimuli\n";
   }
   if (kind != "psychometric") {
     return text;
@@ -240,6 +249,15 @@ std::string guess_note(const ImportedStudy& study, const ImportedAnalysis& analy
   return fmt::format("guess rate {:.3g}, one in the {} answers {}; --guess RATE states another",
                      1.0 / static_cast<double>(counts.size()), counts.size(),
                      fmt::join(answers, ", "));
+}
+
+std::string task_note(const ImportedStudy& study, const ImportedAnalysis& analysis) {
+  if (!identifies_two(study, kind_of(study, analysis))) {
+    return "";
+  }
+  return "task \"one interval\": d' is that of one of two stimuli in each trial; if a trial "
+         "presented both, state task = \"forced choice\" in study.toml, whose d' is 1.41 times "
+         "smaller, and import again with --definition";
 }
 
 std::string imported_definition(const ImportedStudy& study, const ImportedAnalysis& analysis) {

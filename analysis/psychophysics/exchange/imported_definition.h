@@ -32,6 +32,11 @@ std::string answer_word(const ImportedStudy& study, const ImportedTrial& trial);
 /// @throws InputError as imported_definition()
 std::string guess_note(const ImportedStudy& study, const ImportedAnalysis& analysis);
 
+/// The task of an identification of two answers, which no column says, and how to state another;
+/// empty for other analyses.
+/// @throws InputError as imported_definition()
+std::string task_note(const ImportedStudy& study, const ImportedAnalysis& analysis);
+
 /// Text of a definition of protocol "trials" by which imported trials are analysed. It presents
 /// nothing: its only stage ends at once.
 /// @throws InputError if the columns do not say which answer counts, or do not fit the kind

@@ -452,6 +452,7 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       .only_if(identifies)
       .check([](Table& table, P& plan) {
         if (identifies(plan)) {
+          plan.task_assumed = !table.has("task");
           check_task(table, plan);
         }
       })

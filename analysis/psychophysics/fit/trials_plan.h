@@ -94,6 +94,7 @@ struct TrialsPlan {
   std::string stimulus;       // factor that says what was presented, of an identification
   std::vector<std::string> choices;  // of the question, likewise
   DiscriminationTask discrimination{DiscriminationTask::kForcedChoice};  // likewise
+  bool task_assumed{false};   // the definition does not state the task
   bool metacognition{false};  // whether ratings give meta-d' and the M-ratio
   std::string stage;      // whose duration is the time, of times; empty: the answer's reaction time
   bool diffusion{false};  // whether the diffusion model is fitted to choices and times

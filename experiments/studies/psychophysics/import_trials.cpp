@@ -203,8 +203,11 @@ ImportSummary import_trials(TrialsImport request) {
     study = trials::read_trial_tables(request.files, request.columns);
     experiment =
         parse_experiment(trials::imported_definition(study, request.analysis), "study.toml");
-    if (std::string note = trials::guess_note(study, request.analysis); !note.empty()) {
-      study.warnings.push_back(std::move(note));
+    for (std::string note : {trials::guess_note(study, request.analysis),
+                             trials::task_note(study, request.analysis)}) {
+      if (!note.empty()) {
+        study.warnings.push_back(std::move(note));
+      }
     }
   } else {
     experiment = load_experiment(request.definition);

@@ -215,6 +215,24 @@ bool judges_answers(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
          (plan.question.empty() && !d.tracks.empty());
 }
 
+/// Whether two stages have fields that the other one lacks, as stages do that present one stimulus
+/// after the other. Fields of both, such as one that holds the hand, are none of the stimuli.
+bool stages_differ(const TrialsDefinition& d) {
+  Table root = d.root();
+  std::vector<std::set<std::string>> fields;
+  for (Table& stage : root.tables("stages")) {
+    const auto names = stage.is_array("fields") ? stage.texts("fields")
+                       : stage.has("fields")    ? std::vector{stage.text("fields")}
+                                                : std::vector<std::string>{};
+    fields.emplace_back(names.begin(), names.end());
+  }
+  return std::ranges::any_of(fields, [&](const auto& a) {
+    return std::ranges::any_of(fields, [&](const auto& b) {
+      return !std::ranges::includes(a, b) && !std::ranges::includes(b, a);
+    });
+  });
+}
+
 std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definition& d) const {
   const trials::TrialsPlan plan = plan_of(trials_of(d));
   std::vector<std::string> warnings =
@@ -239,6 +257,13 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
         plan.kind == trials::AnalysisKind::kIdentification
             ? ""
             : ", or yes = \"ANSWER\", which counts 1, to [analysis]"));
+  }
+  if (plan.task_assumed && plan.discrimination == analysis::DiscriminationTask::kOneInterval &&
+      stages_differ(trials_of(d))) {
+    warnings.emplace_back(
+        "stages of a trial have different fields, but d' is that of one stimulus in each trial; "
+        "state task = \"forced choice\" in [analysis] if a trial presents both stimuli, whose d' "
+        "is 1.41 times smaller, or task = \"one interval\"");
   }
   if (plan.level_assumed && plan.uses_level()) {
     warnings.push_back(

@@ -21,6 +21,7 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 // As PsychoPy 2023 writes it: a comma at the end of each line, a row for the instructions.
 constexpr const char* kPsychoPy =
@@ -207,6 +208,20 @@ TEST_F(ImportedTrialsTest, AMistypedAnswerIsSaidWithTheGuessRate) {
               HasSubstr("guess rate 0.333, one in the 3 answers Right (1), left (1), right (1)"));
   EXPECT_EQ(guess_note(study, {"s", "", "", 0.5}), "");
   EXPECT_EQ(guess_note(study, {"s", "", "left", {}}), "");
+}
+
+TEST_F(ImportedTrialsTest, HowManyStimuliATrialHadIsSaidWithTheTask) {
+  const std::string two = "subject,answer,side\na,first,first\na,second,second\n";
+  TrialColumns columns = guessed(two);
+  add_factor("side", columns);
+  const ImportedAnalysis identification{"s", "identification", "", {}};
+  const ImportedStudy pair = read(two, columns);
+  EXPECT_THAT(task_note(pair, identification), HasSubstr("task = \"forced choice\""));
+  EXPECT_THAT(imported_definition(pair, identification), HasSubstr("task = \"one interval\""));
+  EXPECT_EQ(task_note(pair, {"s", "none", "", {}}), "");
+  const ImportedStudy three = read(two + "a,third,first\n", columns);
+  EXPECT_EQ(task_note(three, identification), "");
+  EXPECT_THAT(imported_definition(three, identification), Not(HasSubstr("task")));
 }
 
 TEST_F(ImportedTrialsTest, TheWordNoneIsAnAnswerAndALevel) {
