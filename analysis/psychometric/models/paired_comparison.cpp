@@ -69,8 +69,8 @@ VectorXd step_from(const MatrixXd& wins, const VectorXd& worth, PairedModel mode
   return information.ldlt().solve(score);
 }
 
-/// Whether a chain of pairs with answers leads from every item to every other.
-bool are_connected(const MatrixXd& counts) {
+/// Whether a chain of positive counts leads from the row's item to the column's.
+Eigen::ArrayXX<bool> chains(const MatrixXd& counts) {
   Eigen::ArrayXX<bool> over = counts.array() > 0.0;
   const Eigen::Index n = counts.rows();
   for (Eigen::Index by = 0; by < n; ++by) {
@@ -80,7 +80,7 @@ bool are_connected(const MatrixXd& counts) {
       }
     }
   }
-  return over.all();
+  return over;
 }
 
 }  // namespace
@@ -93,7 +93,7 @@ Defined<VectorXd> worths(const MatrixXd& wins, PairedModel model) {
   if (n < 2) {
     return Undefined{"there are fewer than two items"};
   }
-  if (!are_connected(wins + wins.transpose())) {
+  if (!chains(wins + wins.transpose()).all()) {
     return Undefined{"no chain of presented pairs links all items"};
   }
   VectorXd worth = VectorXd::Zero(n);
@@ -106,6 +106,11 @@ Defined<VectorXd> worths(const MatrixXd& wins, PairedModel model) {
     }
   }
   return Undefined{"the worths do not settle"};
+}
+
+Eigen::ArrayX<bool> open_worths(const MatrixXd& wins) {
+  const Eigen::ArrayXX<bool> over = chains(wins);
+  return 2 * (over && over.transpose()).rowwise().count() <= wins.rows();
 }
 
 }  // namespace haptrial::analysis

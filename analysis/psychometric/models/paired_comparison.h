@@ -25,4 +25,13 @@ enum class PairedModel : std::uint8_t {
 /// Source: Firth 1993, Biometrika 80; Kosmidis and Firth 2009, Biometrika 96.
 Defined<Eigen::VectorXd> worths(const Eigen::MatrixXd& wins, PairedModel model);
 
+/// The items whose distance to most others has no bound by the choices alone: chains of choices in
+/// either direction link them to at most half of the items, themselves among these. An item that
+/// was always or never chosen is one; so are both halves of items if one was always chosen over the
+/// other.
+/// @param wins  as of worths()
+/// @returns (items)
+/// Source: Ford 1957, American Mathematical Monthly 64, on when the likelihood has a maximum.
+Eigen::ArrayX<bool> open_worths(const Eigen::MatrixXd& wins);
+
 }  // namespace haptrial::analysis

@@ -23,7 +23,8 @@ void add_paired_methods(Document& document, const PairedPlan& plan) {
       "Worths are those of {}, fitted to the choices of each participant under a condition by "
       "maximum likelihood without its bias of first order (Firth 1993; Kosmidis and Firth 2009), "
       "so that items that were always or never chosen have one, too; a mean has no interval if "
-      "most participants chose so. The mean of the worths over the items is 0. Shares chosen are "
+      "most participants chose so, or if most always or never chose the item and others over all "
+      "the rest. The mean of the worths over the items is 0. Shares chosen are "
       "those of participants to whom every pair was presented.",
       odds ? "the model of Bradley and Terry (1952), in log odds"
            : "Thurstone's case V (1927), in standard deviations of a difference"));

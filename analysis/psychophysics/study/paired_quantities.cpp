@@ -102,18 +102,26 @@ Defined<Eigen::VectorXd> shares_chosen(const Eigen::MatrixXd& counts) {
   return Eigen::VectorXd(chosen.array() / (chosen + other).array());
 }
 
-/// Takes the intervals of worths that trials without exception leave open on one side: those of
-/// items that more than half of the participants chose always or never.
-void remove_open_intervals(const std::vector<QuantityValue>& shares, Quantity& worth) {
-  std::map<std::string, int> exceptions;  // less participants without one, by condition
-  for (const QuantityValue& share : shares) {
-    const bool open = share.value == 0.0 || share.value == 1.0;
-    exceptions[fmt::format("{}", fmt::join(share.levels, ", "))] += open ? -1 : 1;
+/// Participants with an open worth less those without one, by condition and item.
+using OpenWorths = std::map<std::string, int>;
+
+void count_open(const Condition& condition, const std::vector<std::string>& items,
+                const Eigen::MatrixXd& counts, OpenWorths& to) {
+  const Eigen::ArrayX<bool> open = open_worths(counts);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    std::vector<std::string> levels = condition.second;
+    levels.push_back(items[i]);
+    to[fmt::format("{}", fmt::join(levels, ", "))] += open[static_cast<Eigen::Index>(i)] ? 1 : -1;
   }
+}
+
+/// Takes the intervals of worths that the choices of most participants leave open.
+void remove_open_intervals(const OpenWorths& open, Quantity& worth) {
   for (std::size_t cell = 0; cell < worth.means.size(); ++cell) {
-    const auto found = exceptions.find(worth.table.names[cell]);
-    if (found != exceptions.end() && found->second < 0) {
-      worth.means[cell] = Undefined{"most participants chose it always or never"};
+    const auto found = open.find(worth.table.names[cell]);
+    if (found != open.end() && found->second > 0) {
+      worth.means[cell] =
+          Undefined{"for most participants it was always or never chosen, alone or with others"};
     }
   }
 }
@@ -131,19 +139,24 @@ Quantity with_reasons(Quantity result, const CollectedPairs& from) {
 
 std::vector<Quantity> paired_quantities(const TrialsData& data, const TrialsPlan& plan) {
   CollectedPairs worth, share;
+  OpenWorths open;
   const auto all = wins_of(data, plan);
   const auto items_under = items_of(all);
   for (const auto& [condition, wins] : all) {
     const std::set<std::string>& met = items_under.at(condition.second);
     const std::vector<std::string> items(met.begin(), met.end());
     const Eigen::MatrixXd counts = counts_of(wins, items);
-    add_values(condition, items, worths(counts, plan.paired.model), worth);
+    const Defined<Eigen::VectorXd> fitted = worths(counts, plan.paired.model);
+    add_values(condition, items, fitted, worth);
+    if (fitted) {
+      count_open(condition, items, counts, open);
+    }
     add_values(condition, items, shares_chosen(counts), share);
   }
   const bool odds = plan.paired.model == PairedModel::kBradleyTerry;
   Quantity of_items = quantity("worth", odds ? "worth in log odds" : "worth in standard deviations",
                                "", worth.values, plan);
-  remove_open_intervals(share.values, of_items);
+  remove_open_intervals(open, of_items);
   Quantity shares = quantity("share_chosen", "share of trials in which it was chosen", "",
                              share.values, plan, ValueRange::kShare);
   return {with_reasons(std::move(of_items), worth), with_reasons(std::move(shares), share)};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/base/random.h"
 
@@ -45,6 +46,22 @@ TEST(PairedComparisonTest, TwoItemsHaveTheOddsOfTheirChoices) {
   wins(1, 0) = 10.0;
   const auto found = worths(wins, PairedModel::kBradleyTerry);
   EXPECT_NEAR((*found)[0] - (*found)[1], std::log(30.5 / 10.5), 1e-10);
+}
+
+/// Ford (1957): worths are bounded if chains of choices lead both ways between all items.
+TEST(PairedComparisonTest, ChoicesOneWayAcrossACutLeaveWorthsOpen) {
+  MatrixXd wins = MatrixXd::Zero(4, 4);
+  const auto open = [&] {
+    const Eigen::ArrayX<bool> found = open_worths(wins);
+    return std::vector<bool>(found.begin(), found.end());
+  };
+  wins(0, 1) = wins(1, 0) = wins(2, 3) = wins(3, 2) = 3.0;
+  wins(2, 1) = 6.0;  // one half always wins, where the halves meet
+  EXPECT_EQ(open(), std::vector<bool>(4, true));
+  wins(1, 2) = 1.0;
+  EXPECT_EQ(open(), std::vector<bool>(4, false));
+  wins(2, 3) = 0.0;  // the last one always wins
+  EXPECT_EQ(open(), (std::vector<bool>{false, false, false, true}));
 }
 
 TEST(PairedComparisonTest, AnItemThatAlwaysWinsHasAnEnd) {

@@ -102,8 +102,29 @@ TEST(PairedQuantitiesTest, AWorthThatMostTrialsLeaveOpenHasNoInterval) {
   const auto found = paired_quantities(data, paired_plan());
   ASSERT_EQ(found[0].means.size(), 3u);
   ASSERT_FALSE(found[0].means[0]);
-  EXPECT_EQ(found[0].means[0].because(), "most participants chose it always or never");
+  EXPECT_EQ(found[0].means[0].because(),
+            "for most participants it was always or never chosen, alone or with others");
   EXPECT_TRUE(found[0].means[1]);
+}
+
+/// The item d, which always wins, meets c alone, so that no share of it is compared.
+TEST(PairedQuantitiesTest, AWorthAtTheEndOfAChainHasNoIntervalIfItIsOpen) {
+  TrialsData data = indifferent(1);
+  std::erase_if(data.trials, [](const StudyTrial& trial) {
+    return trial.variables[0].word == "a" && trial.variables[1].word == "c";
+  });
+  for (std::size_t person = 0; person < 10; ++person) {
+    for (int repetition = 0; repetition < 6; ++repetition) {
+      data.trials.push_back(choice(person, "d", "c", person < 6 || repetition % 2 == 0));
+    }
+  }
+  const auto found = paired_quantities(data, paired_plan());
+  ASSERT_EQ(found[0].means.size(), 4u);
+  EXPECT_FALSE(found[1].compared);
+  EXPECT_FALSE(found[0].means[3]);
+  for (std::size_t other = 0; other < 3; ++other) {
+    EXPECT_TRUE(found[0].means[other]) << other;
+  }
 }
 
 TEST(PairedQuantitiesTest, SharesNeedTheSameOpponentsAndWorthsOnlyAChain) {
