@@ -144,12 +144,11 @@ Eigen::Vector3d Excitation::command(CertificatePart part, long tick) const noexc
   }
   if (part == CertificatePart::kFree || part == CertificatePart::kLoaded) {
     const double t = static_cast<double>(tick % axis_ticks(part)) / rate_;
-    const double rise = smooth(2.0 * t) * smooth(2.0 * (kFree - t));
     double sum = 0.0;
     for (std::size_t i = 0; i < std::size(kFreeTones); ++i) {
       sum += std::sin(2.0 * kPi * kFreeTones[i] * t + static_cast<double>(i * i));
     }
-    return free_force() * rise * kFreeShare * sum * axis_at(tick, axis_ticks(part));
+    return free_force() * centred(part, tick) * kFreeShare * sum * axis_at(tick, axis_ticks(part));
   }
   return Eigen::Vector3d::Zero();
 }
@@ -158,7 +157,13 @@ Eigen::Vector3d Excitation::centring(CertificatePart part, long tick,
                                      const PointState& tool) const noexcept {
   const Eigen::Vector3d axis = axis_at(tick, axis_ticks(part));
   const double stiffness = std::max(kCentring, free_force() / reach_);
-  return (-stiffness * axis.dot(tool.position) - kCalming * axis.dot(tool.velocity)) * axis;
+  const double force = -stiffness * axis.dot(tool.position) - kCalming * axis.dot(tool.velocity);
+  return centred(part, tick) * force * axis;
+}
+
+double Excitation::centred(CertificatePart part, long tick) const noexcept {
+  const double t = static_cast<double>(tick % axis_ticks(part)) / rate_;
+  return smooth(2.0 * t) * smooth(2.0 * (kFree - t));
 }
 
 int Excitation::moved_axis(CertificatePart part, long tick) const noexcept {

@@ -50,8 +50,11 @@ class Excitation {
   /// @param tick  from the beginning of the part.  @returns the force to command [N].
   Eigen::Vector3d command(CertificatePart part, long tick) const noexcept;
   /// The force that keeps a handle that was let go near the origin, along the axis that moves;
-  /// added to the command of kFree and kLoaded [N].
+  /// added to the command of kFree and kLoaded [N]. It comes and goes by centred().
   Eigen::Vector3d centring(CertificatePart part, long tick, const PointState& tool) const noexcept;
+  /// How much of the centring and the excitation acts in kFree or kLoaded, from 0 to 1: it grows
+  /// and falls within half a second at the ends of each axis' time.
+  double centred(CertificatePart part, long tick) const noexcept;
   /// The axis along which kFree or kLoaded moves the handle on this tick, 0 to 2.
   int moved_axis(CertificatePart part, long tick) const noexcept;
   /// Where a machine that holds the handle takes it; the origin unless the part is kMove [m].

@@ -14,6 +14,7 @@ using Eigen::Vector3d;
 constexpr double kNear = 0.8;        // of the workspace, to which a free handle may fall
 constexpr double kHold = 80.0;       // beyond it [N/m]
 constexpr double kCalm = 4.0;        // [N·s/m]
+constexpr double kSoft = 0.01;       // beyond kNear, over which kCalm grows [m]
 constexpr double kPress = 1.0;       // on a wall [N]
 constexpr double kBack = 0.003;      // in front of the wall, from which the handle is let go [m]
 constexpr double kReady = 0.6;       // time to take it there [s]
@@ -190,26 +191,29 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
 Vector3d CertificateTask::command(const device::DeviceReading& reading) noexcept {
   const CertificatePart part = parts_[at_];
   if (part == CertificatePart::kWall) {
-    return walls_.command(reading.tool) + catching(reading.tool, excitation_.axes().front());
+    return walls_.command(reading.tool) + catching(reading.tool, excitation_.axes().front(), 1.0);
   }
   Vector3d wanted = excitation_.command(part, tick_);
   if (is_free(part)) {
     wanted += excitation_.centring(part, tick_, reading.tool) +
-              catching(reading.tool, excitation_.moved_axis(part, tick_));
+              catching(reading.tool, excitation_.moved_axis(part, tick_),
+                       excitation_.centred(part, tick_));
   }
   const double most = envelope_.limits().max_force;
   return wanted.norm() > most ? Vector3d(wanted * (most / wanted.norm())) : wanted;
 }
 
-/// Holds a handle that was let go and falls, by weight that is left, along the other axes.
-Vector3d CertificateTask::catching(const PointState& tool, int moved) const noexcept {
+/// Holds a handle that was let go and falls, by weight that is left, where nothing else holds it.
+Vector3d CertificateTask::catching(const PointState& tool, int moved,
+                                   double centred) const noexcept {
   const double near = of_ == device::Part::kTip ? kNear * device_.info().workspace_radius : kFar;
   Vector3d force = Vector3d::Zero();
   for (const int axis : excitation_.axes()) {
     const double x = tool.position[axis];
-    if (axis != moved && std::abs(x) > near) {
-      force[axis] = -kHold * (x - std::copysign(near, x)) - kCalm * tool.velocity[axis];
-    }
+    const double depth = std::max(std::abs(x) - near, 0.0);
+    const double calm = kCalm * std::min(depth / kSoft, 1.0);
+    const double share = axis == moved ? 1.0 - centred : 1.0;
+    force[axis] = -share * (kHold * std::copysign(depth, x) + calm * tool.velocity[axis]);
   }
   return force;
 }

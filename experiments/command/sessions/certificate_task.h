@@ -78,7 +78,9 @@ class CertificateTask final : public realtime::ServoTask {
   bool read(device::DeviceReading& reading) noexcept;
   bool write(const Eigen::Vector3d& force) noexcept;
   Eigen::Vector3d command(const device::DeviceReading& reading) noexcept;
-  Eigen::Vector3d catching(const PointState& tool, int moved) const noexcept;
+  /// @param moved    the axis that is driven
+  /// @param centred  how much of it other forces hold, 0 to 1
+  Eigen::Vector3d catching(const PointState& tool, int moved, double centred) const noexcept;
   /// @param measured  null: the sensor gave nothing
   void keep(const device::DeviceReading& reading, const Eigen::Vector3d& command,
             const device::MeasuredForce* measured) noexcept;
