@@ -102,6 +102,32 @@ std::string function_words(const TrialsPlan& plan) {
       percent(plan.threshold_at));
 }
 
+/// Origin of the intervals of functions at listed levels.
+std::string sampled_words(const TrialsPlan& plan) {
+  return fmt::format(
+      "Functions of listed levels are fitted by maximum likelihood. Intervals of threshold, "
+      "width and Weber fraction at listed levels are those of the "
+      "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
+      "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
+      "2001). If answers scatter more than chance explains (p below {} of the deviance), the "
+      "intervals are as much longer as a quasi-likelihood makes them, those of slope and Weber "
+      "fraction on the logarithm, those of rates up to the bounds of the fit. A likeliest rate of "
+      "0 has no interval, as samples that are drawn without lapses do not tell how many there "
+      "may be.",
+      plan.resamples, kUnusualScatter);
+}
+
+/// The same without bootstrap samples.
+std::string unsampled_words() {
+  return fmt::format(
+      "Functions of listed levels are fitted by maximum likelihood, without bootstrap samples. "
+      "Intervals are those of the profile likelihood (Venzon and Moolgavkar 1988), which "
+      "threshold, width and Weber fraction have. If answers scatter more than chance explains (p "
+      "below {} of the deviance by chi-square), they are as much longer as a quasi-likelihood "
+      "makes them; functions with fewer than five trials a level on average are not judged.",
+      kUnusualScatter);
+}
+
 /// Origin of the intervals of functions.
 std::string interval_words(const TrialsResult& result) {
   const auto adaptive = [](const FunctionFit& fit) { return fit.adaptive; };
@@ -115,18 +141,8 @@ std::string interval_words(const TrialsResult& result) {
         "1 / (w + s / 10) in the width w. A side of an interval is open if the prior ends it.";
   }
   if (!std::all_of(result.fits.begin(), result.fits.end(), adaptive)) {
-    words += fmt::format(
-        "{}Functions of listed levels are fitted by maximum likelihood. Intervals of threshold, "
-        "width and Weber fraction at listed levels are those of the "
-        "profile likelihood (Venzon and Moolgavkar 1988), those of slope, lapse rate and band "
-        "bias-corrected and accelerated over {} parametric bootstrap samples (Wichmann and Hill "
-        "2001). If answers scatter more than chance explains (p below {} of the deviance), the "
-        "intervals are as much longer as a quasi-likelihood makes them, those of slope and Weber "
-        "fraction on the logarithm, those of rates up to the bounds of the fit. A likeliest rate "
-        "of "
-        "0 has no interval, as samples that are drawn without lapses do not tell how many there "
-        "may be.",
-        words.empty() ? "" : " ", result.plan.resamples, kUnusualScatter);
+    words += (words.empty() ? "" : " ") +
+             (result.plan.resamples > 0 ? sampled_words(result.plan) : unsampled_words());
   }
   return words;
 }

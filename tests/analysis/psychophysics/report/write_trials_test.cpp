@@ -28,6 +28,7 @@ namespace haptrial::analysis::trials {
 namespace {
 
 using test::SimulatedTask;
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -138,6 +139,12 @@ TEST(TrialsTextTest, MethodsStateTheRuleByWhichIntervalsAreWidened) {
   EXPECT_THAT(to_markdown(trials_report(result, {})),
               HasSubstr(fmt::format("(p below {} of the deviance)", kUnusualScatter)));
   EXPECT_EQ(kUnusualScatter, 0.2);
+  result.plan.resamples = 0;
+  EXPECT_THAT(
+      to_markdown(trials_report(result, {})),
+      AllOf(HasSubstr("without bootstrap samples"),
+            HasSubstr(fmt::format("(p below {} of the deviance by chi-square)", kUnusualScatter)),
+            Not(HasSubstr("bias-corrected"))));
 }
 
 /// Reaction times, and errors that nobody made, before and after.
