@@ -62,9 +62,10 @@ double scaled_cut(const Scatter& scatter) {
                            gsl_cdf_chisq_Pinv(kLevel, 1.0));
 }
 
-/// The p of the deviance by chi-square; NaN if levels are too few or have too few trials for it.
+/// The p of the deviance by chi-square; NaN if levels are too few, or have too few trials on
+/// average.
 double chi_square_p(const Scatter& scatter, std::span<const TrialBlock> blocks) {
-  constexpr double kFewTrials = 5.0;  // at a level
+  constexpr double kFewTrials = 5.0;  // at a level, on average
   double trials = 0.0;
   for (const TrialBlock& block : blocks) {
     trials += block.total;
@@ -74,14 +75,21 @@ double chi_square_p(const Scatter& scatter, std::span<const TrialBlock> blocks) 
              : gsl_cdf_chisq_Q(scatter.deviance, scatter.freedom);
 }
 
-/// @param stated  with `deviance_p`, which is NaN if nobody drew samples
+/// The cut of intervals over that of chi-square: 1 unless answers scatter.
+/// @param p  of the deviance by samples; NaN: none were drawn, and chi-square gives it
+double judged_cut(std::span<const TrialBlock> blocks, const LikelihoodOptions& options, double& p) {
+  if (p >= kUnusualScatter) {
+    return 1.0;
+  }
+  const Scatter scatter = scatter_of(blocks, options);
+  p = std::isnan(p) ? chi_square_p(scatter, blocks) : p;
+  return p < kUnusualScatter ? scaled_cut(scatter) : 1.0;
+}
+
+/// @param stated  with `deviance_p` of samples
 void take_profile(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
                   StatedFit& stated) {
-  const Scatter scatter = scatter_of(blocks, options);
-  if (std::isnan(stated.deviance_p)) {
-    stated.deviance_p = chi_square_p(scatter, blocks);
-  }
-  const double cut = stated.deviance_p < kUnusualScatter ? scaled_cut(scatter) : 1.0;
+  const double cut = judged_cut(blocks, options, stated.deviance_p);
   stated.widening = std::sqrt(cut);
   const double level = gsl_cdf_chisq_P(cut * gsl_cdf_chisq_Pinv(kLevel, 1.0), 1.0);
   const ProfiledFit fit = profiled_fit(blocks, options, std::min(level, kMostLevel));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,7 +29,8 @@ struct StatedFit {
   /// How much longer the answers' scatter makes the intervals of listed levels; 1: as chance has
   /// it.
   double widening{1.0};
-  double deviance_p{0.0};  // by which the scatter was judged; NaN: it was not
+  /// By which the scatter was judged; NaN: it was not.
+  double deviance_p{std::numeric_limits<double>::quiet_NaN()};
   /// Why the intervals do not hold the truth as often as they would say; empty: they do.
   std::string no_interval;
 
@@ -45,7 +47,8 @@ struct StatedFit {
 /// profile's cut is that of an F test with the deviance over its degrees of freedom as the scale
 /// (quasi-likelihood).
 /// @param adaptive    the levels depended on the answers
-/// @param deviance_p  of bootstrap_fit(); NaN: no samples were drawn, and chi-square gives it
+/// @param deviance_p  of bootstrap_fit(); NaN: no samples were drawn, and chi-square gives it if
+///   levels have five trials on average
 /// @throws std::invalid_argument as LikelihoodFitter
 /// Source: McCullagh and Nelder 1989, Generalized Linear Models, 4.5 (the scale).
 StatedFit stated_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,

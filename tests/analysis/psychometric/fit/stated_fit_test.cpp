@@ -127,6 +127,7 @@ TEST(StatedFit, ScatterBeyondChanceMakesIntervalsLonger) {
 
 /// Chi-square of four degrees of freedom, seven levels less three parameters, in closed form.
 TEST(StatedFit, WithoutSamplesChiSquareJudgesTheScatter) {
+  EXPECT_TRUE(std::isnan(StatedFit{}.deviance_p)) << "nothing is judged before a fit";
   constexpr double kNoSamples = std::numeric_limits<double>::quiet_NaN();
   const LikelihoodOptions options = stated_options(Task::kForcedChoice);
   std::vector<TrialBlock> blocks{{-2.0, 14, 40}, {-1.0, 29, 40}, {-0.5, 18, 40}, {0.0, 35, 40},
@@ -145,8 +146,12 @@ TEST(StatedFit, WithoutSamplesChiSquareJudgesTheScatter) {
   for (TrialBlock& block : blocks) {
     block = {block.level, block.correct / 10, 4};
   }
-  EXPECT_TRUE(std::isnan(stated_fit(blocks, options, false, kNoSamples).deviance_p))
-      << "too few trials at a level";
+  const auto judged = [&] {
+    return !std::isnan(stated_fit(blocks, options, false, kNoSamples).deviance_p);
+  };
+  EXPECT_FALSE(judged()) << "too few trials at a level";
+  blocks[3] = {0.0, 9, 11};  // 35 trials of seven levels
+  EXPECT_TRUE(judged());
 }
 
 }  // namespace
