@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "analysis/psychophysics/fit/series.h"
@@ -63,13 +62,9 @@ Measure measure_of(ReachQuantity quantity) {
 }
 
 /// Whether each reach belongs to the plan's cycles of its block.
-std::vector<bool> taken(const TrialsData& data, const ReachingResult& result) {
-  using Place = std::tuple<std::size_t, int, std::string>;  // a participant's block in a session
-  const auto place_of = [&](std::size_t i) {
-    const StudyReach& reach = result.reaches[i];
-    const int session = data.session_of(data.trials[reach.trial]).session;
-    return Place{result.persons[i], session, reach.block};
-  };
+std::vector<bool> taken(const ReachingResult& result) {
+  using Place = std::pair<std::size_t, std::size_t>;  // a participant's block
+  const auto place_of = [&](std::size_t i) { return Place{result.persons[i], result.block_of[i]}; };
   std::map<Place, std::size_t> trials, seen;
   for (std::size_t i = 0; i < result.reaches.size(); ++i) {
     ++trials[place_of(i)];
@@ -162,7 +157,7 @@ std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingRes
   if (plan.by.empty()) {
     return all;
   }
-  const std::vector<bool> counts = taken(data, reaching);
+  const std::vector<bool> counts = taken(reaching);
   for (const ReachQuantity each : reaching.plan.quantities) {
     const Measure measure = measure_of(each);
     std::vector<QuantityValue> values;

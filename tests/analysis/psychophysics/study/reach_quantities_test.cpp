@@ -91,6 +91,7 @@ TEST(ReachQuantitiesTest, ThroughputIsBitsOfTheWidthThatWasUsedOverTime) {
   made.data.trials.clear();
   made.reaching.reaches.clear();
   made.reaching.persons.clear();
+  made.reaching.block_of.assign(kReaches, 0);
   RandomStream random(1, "ends");
   for (int i = 0; i < kReaches; ++i) {
     const bool is_far = i % 4 < 2;
@@ -136,6 +137,7 @@ test::ReachesOfStudy two_days(const ReachingPlan& plan) {
     made.data.trials.push_back(trial);
     made.reaching.reaches.push_back(reach);
     made.reaching.persons.push_back(day.reaching.persons[i]);
+    made.reaching.block_of.push_back(3 + day.reaching.block_of[i]);
   }
   return made;
 }

@@ -75,6 +75,7 @@ void add_person(const SimulatedReaches& study, std::size_t person, ReachesOfStud
       made.data.trials.push_back(std::move(trial));
       made.reaching.reaches.push_back(std::move(reach));
       made.reaching.persons.push_back(person);
+      made.reaching.block_of.push_back(b);
     }
   }
 }

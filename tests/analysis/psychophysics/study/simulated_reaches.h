@@ -22,7 +22,7 @@ struct SimulatedReaches {
 
 struct ReachesOfStudy {
   analysis::trials::TrialsData data;
-  analysis::trials::ReachingResult reaching;  // its reaches, persons and plan
+  analysis::trials::ReachingResult reaching;  // its reaches with persons and blocks, and plan
 };
 
 ReachesOfStudy simulated_reaches(const SimulatedReaches& study,
