@@ -318,6 +318,14 @@ void take_known_depth(const ContactRecording& recording, ContactSamples& samples
   }
 }
 
+void remark_on_lag(const PrepareOptions& o, PreparedContact& result) {
+  if (!o.lag && result.friction_by_lag == 0.0) {
+    result.remarks.push_back(
+        fmt::format("The interval of friction does not allow for an error of the lag, {}.",
+                    result.lag->doubt.empty() ? "as there are too few poses" : "which is doubted"));
+  }
+}
+
 /// Forces that friction does not explain.
 void remark_on_lean(const Touch& touch, PreparedContact& result) {
   std::vector<double> lean;
@@ -403,6 +411,7 @@ PreparedContact prepare_contact(const ContactRecording& recording, const contact
   const contact::Shading shading(body.mesh, body.surface, options.crease_angle);
   force = refined_forces(recording, path, force, T_BW, body, shading, options, result);
   remark_on_load(options, result);
+  remark_on_lag(options, result);
   const ForceStream at_poses = resampled(force, path.time, mean_period(path));
   result.samples = samples_at_poses(path, touch_body(path, at_poses, T_BW, body, shading, options),
                                     T_BW, result.velocity_noise);

@@ -166,6 +166,26 @@ TEST(EvaluateRenderingTest, TheIntervalOfFrictionHasWhatTheLagLeavesOpen) {
   EXPECT_GE(held, kSeeds - 1) << "by the noise alone none of them does";
 }
 
+/// Ten poses a second of a slow probe tell a lag, but too few normals.
+TEST(EvaluateRenderingTest, AnIntervalOfFrictionWithoutTheLagSaysSo) {
+  EvaluationOptions options = known_frame();
+  options.renderers = {RendererKind::kPenalty};
+  options.prepare.lag.reset();
+  const auto has_remark = testing::Contains(HasSubstr("does not allow for an error of the lag"));
+  ContactRecording recording = rubbed_late(1);
+  EXPECT_THAT(evaluate_rendering(recording, sphere(), options).contact.remarks,
+              testing::Not(has_remark));
+  PoseStream few;
+  for (std::size_t i = 0; i < recording.pose.size(); i += 13) {
+    few.time.push_back(recording.pose.time[i]);
+    few.position.push_back(recording.pose.position[i]);
+    few.orientation.push_back(recording.pose.orientation[i]);
+  }
+  recording.pose = few;
+  const Evaluation e = evaluate_rendering(recording, sphere(), options);
+  EXPECT_THAT(e.contact.remarks, has_remark) << e.contact.lag->doubt << recording.pose.size();
+}
+
 TEST(EvaluateRenderingTest, OnACircleLagAndFrictionAreNotToldApart) {
   EvaluationOptions options = known_frame();
   options.renderers = {RendererKind::kProxy};
