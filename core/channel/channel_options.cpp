@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <utility>
 
 #include "core/channel/channel_kinds.h"
 
@@ -185,21 +184,28 @@ std::vector<ChannelOptions> read_channels(Table& root) {
                  fmt::format("{}, other than '{}'", kNameForm, kEvents));
     }
     Table table = all.table(name);
-    ChannelOptions channel = read_channel(table, name);
-    const std::string& path = channel.plan.path;
-    const auto same = std::ranges::find_if(
-        channels, [&](const ChannelOptions& other) { return other.plan.path == path; });
-    if (!path.empty() && same != channels.end()) {
-      table.reject("path", fmt::format("\"{}\", as that of channel {}", path, same->name),
-                   "a line of its own: each of two readers gets half of what comes");
-    }
-    channels.push_back(std::move(channel));
+    channels.push_back(read_channel(table, name));
   }
   if (channels.size() > kMostChannels) {
     root.reject("channels", fmt::format("{} channels", channels.size()),
                 fmt::format("at most {}", kMostChannels));
   }
   return channels;
+}
+
+void check_lines(Table& root, const std::vector<ChannelOptions>& channels) {
+  for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+    const std::string& path = channel->plan.path;
+    const auto same = std::find_if(channels.begin(), channel, [&](const ChannelOptions& other) {
+      return other.plan.path == path;
+    });
+    if (!path.empty() && same != channel) {
+      root.table("channels")
+          .table(channel->name)
+          .reject("path", fmt::format("\"{}\", as that of channel {}", path, same->name),
+                  "a line of its own: each of two readers gets half of what comes");
+    }
+  }
 }
 
 }  // namespace haptrial::channel

@@ -35,6 +35,9 @@ struct ChannelOptions {
 /// it.
 std::vector<ChannelOptions> read_channels(Table& root);
 
+/// Notes channels that share a line, which no session may begin with; recorded ones may have them.
+void check_lines(Table& root, const std::vector<ChannelOptions>& channels);
+
 /// Names of the values of these channels, "CHANNEL.QUANTITY", in the order in which a session has
 /// them (DeviceReading::channels).
 std::vector<std::string> names_of_values(const std::vector<ChannelOptions>& channels);

@@ -1,5 +1,7 @@
 #include "core/device/envelope.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,6 +17,7 @@ constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readin
 constexpr double kFallInDoubt = 20.0;   // while the position may be frozen [N/s]
 constexpr double kNotFelt = 0.2;        // change of force in a tick [N]
 constexpr double kShortestFade = 0.05;  // [s]
+constexpr double kLongestFade = 10.0;   // that was ever recorded [s]
 // A force that fades gives way to no hand: within these times a hand that lets go is not pushed
 // far.
 constexpr double kLongestChange = 0.2;      // [s]
@@ -46,12 +49,14 @@ const Schema<EnvelopeLimits>& envelope_schema() {
           .number("ramp_in", &E::ramp_in, {kShortestFade, 10.0}, "s",
                   "Time over which the force of a pass grows from zero")
           .required()
-          .number("ramp_out", &E::ramp_out, {kShortestFade, kLongestRampOut}, "s",
-                  "Time over which the force falls to zero after a normal end")
+          .number("ramp_out", &E::ramp_out, {kShortestFade, kLongestFade}, "s",
+                  "Time over which the force falls to zero after a normal end; at most 0.5 s in a "
+                  "new session")
           .required()
           .number(
-              "change_time", &E::change_time, {kShortestFade, kLongestChange}, "s",
-              "Time over which the force goes over to that of another stage, question or object")
+              "change_time", &E::change_time, {kShortestFade, kLongestFade}, "s",
+              "Time over which the force goes over to that of another stage, question or object; "
+              "at most 0.2 s in a new session")
           .number("max_saturation", &E::max_saturation, {0.0, kLongestAtLimit, true}, "s",
                   "Longest time without a break at max_force; a longer one ends the pass")
           .number("holding_force", &E::holding_force, {0.0, kLargestHolding, true}, "N",
@@ -59,6 +64,16 @@ const Schema<EnvelopeLimits>& envelope_schema() {
                   "that does not change counts as frozen")
           .otherwise("from the friction of [hand]");
   return schema;
+}
+
+void check_fades(Table& table, const EnvelopeLimits& limits) {
+  const auto check = [&table](const char* key, double value, double most) {
+    if (value > most) {
+      table.reject(key, fmt::format("{:g}", value), fmt::format("at most {:g} [s]", most));
+    }
+  };
+  check("ramp_out", limits.ramp_out, kLongestRampOut);
+  check("change_time", limits.change_time, kLongestChange);
 }
 
 Envelope::Envelope(const EnvelopeLimits& limits)

@@ -11,7 +11,8 @@
 namespace haptrial {
 template <class T>
 class Schema;
-}
+class Table;
+}  // namespace haptrial
 
 namespace haptrial::device {
 
@@ -32,6 +33,10 @@ struct EnvelopeLimits {
 /// The keys of [envelope]. No value takes a check out of use: ramps and changes last 0.05 s at
 /// least.
 const Schema<EnvelopeLimits>& envelope_schema();
+
+/// Notes fades that are too long for a session that begins; recorded ones may have them.
+/// @param table  [envelope]
+void check_fades(Table& table, const EnvelopeLimits& limits);
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a

@@ -382,9 +382,6 @@ TEST(ChannelOptionsTest, MistakesAreNamed) {
               HasSubstr("a name of up to 40 letters"));
   EXPECT_THAT(problem("[channels.events]\nkind = \"scripted\"\nquantities = { x = \"m\" }\n"),
               HasSubstr("channels.events is 'events'"));
-  const std::string line = "kind = \"line\"\npath = \"/dev/ttyACM0\"\nquantities = { x = \"m\" }\n";
-  EXPECT_THAT(problem("[channels.a]\n" + line + "[channels.b]\n" + line),
-              HasSubstr("channels.b.path is \"/dev/ttyACM0\", as that of channel a"));
 }
 
 TEST(ChannelOptionsTest, AQuantityIsFoundByItsChannelAndName) {
