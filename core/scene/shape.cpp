@@ -22,19 +22,19 @@ SurfaceDistance of_sphere(const Vector3d& from_centre, double radius) noexcept {
   return {r - radius, r > 0.0 ? Vector3d(from_centre / r) : Vector3d::UnitY()};
 }
 
-/// Width over which gradients turn inside a shape, and the sum of two depths up to which they do.
+/// Greatest width W over which gradients turn inside a shape, and the sum S of two depths in its
+/// middle.
 struct Rounding {
   double width{0.0};   // [m]
   double depths{0.0};  // [m]
 };
 
-/// The greater of two distances inside, whose gradient turns from one to the other where they
-/// differ by less than a width w (a polynomial smooth maximum). It follows from the sum s of
-/// depths,
+/// The greater of two distances inside, whose gradient turns from one to the other if they differ
+/// by less than a width w (a polynomial smooth maximum). The sum s of both depths sets the width,
 ///
 ///     w = W u / (W S + u),  u = s (S - s)
 ///
-/// so that the surface stays where it is, and so does the middle.
+/// which is 0 on the surface and in the middle, so that both stay where they are.
 SurfaceDistance joined(const SurfaceDistance& one, const SurfaceDistance& other,
                        const Rounding& rounding) noexcept {
   const bool first = one.distance >= other.distance;
@@ -152,7 +152,7 @@ PlacedShape::PlacedShape(const Shape& shape) {
 
 SurfaceDistance PlacedShape::distance(const Vector3d& p, double rounding) const noexcept {
   const Vector3d from = p - origin_;
-  const Rounding inside{rounding, 2.0 * (deepest() - rounding)};
+  const Rounding inside{rounding, 2.0 * deepest()};
   switch (kind_) {
     case Kind::kHalfSpace:
       return {axis_.dot(from), axis_};

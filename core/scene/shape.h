@@ -99,9 +99,9 @@ class PlacedShape {
   /// @throws std::invalid_argument naming the parameter that breaks its bound.
   explicit PlacedShape(const Shape& shape);
 
-  /// @param rounding  width over which the gradient turns between two parts of the surface inside
-  ///                  a box or cylinder, but for as much before the middle; 0: it jumps, and the
-  ///                  distance is exact [m]
+  /// @param rounding  greatest width over which the gradient turns between two parts of the
+  ///                  surface inside a box or cylinder; it is 0 on the surface and in the middle.
+  ///                  0: it jumps, and the distance is exact [m]
   /// Servo thread: no allocation, lock, I/O or throw.
   SurfaceDistance distance(const Eigen::Vector3d& p, double rounding = 0.0) const noexcept;
   /// How far the point that lies deepest is from the surface; infinite for a half-space [m].

@@ -36,11 +36,11 @@ struct ReliefHere {
 /// n points to the free side; depth is the distance behind the surface; c is contact::damper_share,
 /// so that the damper does not strike the hand. The hand is never pulled. Over the last 2 mm before
 /// the middle of a sphere, box or cylinder the force fades, so that it does not turn round at once;
-/// inside a box or cylinder it turns over 2 mm from one face to the next, with the same potential.
-/// F = limit / (1 + steepest slope), so that |f| stays within the limit. Passive: f at rest is
-/// minus the gradient of phi(e) with phi' = clip(k e, 0, F), and clip is monotone, so the damper
-/// takes energy. Reliefs tilt the force against the way uphill, as on real ridges, and change it
-/// along the normal (Minsky 1995 has the lateral part alone).
+/// inside a box or cylinder it turns over up to 2 mm from one face to the next, with the same
+/// potential. F = limit / (1 + steepest slope), so that |f| stays within the limit. Passive: f at
+/// rest is minus the gradient of phi(e) with phi' = clip(k e, 0, F), and clip is monotone, so the
+/// damper takes energy. Reliefs tilt the force against the way uphill, as on real ridges, and
+/// change it along the normal (Minsky 1995 has the lateral part alone).
 class Surface {
  public:
   Surface(const SurfaceParameters& parameters, const Setting& setting);

@@ -13,6 +13,7 @@
 #include "core/base/random.h"
 #include "core/scene/needed_damping.h"
 #include "core/scene/scene.h"
+#include "core/scene/surface.h"
 #include "tests/core/scene/every_scene.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
@@ -177,6 +178,32 @@ TEST(ShapeTest, TheForceTurnsByDegreesFromOneFaceToTheNext) {
       }
       EXPECT_NEAR(work, -0.5 * kStiffness * depth * depth, 5e-6) << depth;
     }
+  }
+}
+
+/// Plates that are hardly thicker than the widths of rounding and of the fade before the middle: a
+/// stroke of 10 µm across the place at which two faces are equally near, at every depth.
+TEST(ShapeTest, TheForceOfAThinPlateTurnsByDegreesAtEveryDepth) {
+  constexpr double kSide = 0.02;
+  constexpr double kStroke = 1e-5;  // a tenth of a tick at 0.1 m/s [m]
+  const auto check = [&](const Shape& shape, double half) {
+    Surface surface({shape, false, {2000.0, 0.0}}, Setting{5.0, 1000.0});
+    const auto force_at = [&](double x, double depth) {
+      FieldState state;
+      const Vector3d p(x, half - depth, 1e-9);
+      return surface.force({{p, Vector3d::Zero()}, 0.0, nullptr}, state);
+    };
+    for (double depth = 5e-5; depth <= half; depth += 2e-5) {
+      const double x = kSide - depth;
+      const Vector3d change = force_at(x + kStroke, depth) - force_at(x, depth);
+      EXPECT_LT(change.norm(), 0.05) << half << ", " << depth;
+      EXPECT_LT((force_at(x, depth) - force_at(x - kStroke, depth)).norm(), 0.05)
+          << half << ", " << depth;
+    }
+  };
+  for (const double half : {2e-3, 2.5e-3, 3e-3, 4e-3, 5e-3, 20e-3}) {
+    check(Box{kOrigin, {2.0 * kSide, 2.0 * half, 2.0 * kSide}}, half);
+    check(Cylinder{kOrigin, {0.0, 1.0, 0.0}, kSide, 2.0 * half}, half);
   }
 }
 
