@@ -7,6 +7,13 @@
 #include "core/bone/data/anatomy.h"
 
 namespace haptrial::bone {
+namespace {
+
+// The power of the norm of the balls' depths is so high that the deepest ball has nearly all of the
+// force.
+constexpr double kPower = 32.0;
+
+}  // namespace
 
 RegionMap::RegionMap(const RegionSetup& setup, const BoneModel& model, double largest) {
   for (const std::string& structure : setup.structures) {
@@ -50,15 +57,13 @@ ForbiddenRegion::Depth ForbiddenRegion::depth(std::size_t structure,
   double sum = 0.0;
   for (const BurrShape::Ball& ball : balls) {
     const double share = depth_of(ball, here) / found.deepest;
-    const double squared = share * share;
-    const double sixth = squared * squared * squared;
-    sum += sixth * squared;
-    found.way_out += sixth * share * here.gradient;
+    const double weight = std::pow(share, kPower - 1.0);
+    sum += weight * share;
+    found.way_out += weight * here.gradient;
   }
-  const double count = static_cast<double>(balls.size());
-  const double part = std::sqrt(std::sqrt(std::sqrt(sum / count)));
-  found.mean = part * found.deepest;
-  found.way_out *= part / sum;  // part^8 is sum / count
+  const double ratio = std::pow(sum, 1.0 / kPower);
+  found.joint = ratio * found.deepest;
+  found.way_out *= ratio / sum;
   return found;
 }
 
@@ -71,7 +76,7 @@ Eigen::Vector3d ForbiddenRegion::tick(std::span<const BurrShape::Ball> balls,
     depths_[n] = found.deepest;
     felt_[n] = felt_[n] || found.deepest <= 0.0;
     if (felt_[n]) {
-      force += std::min(spring_ * found.mean, most_) * found.way_out;
+      force += std::min(spring_ * found.joint, most_) * found.way_out;
     }
   }
   return force;
@@ -82,9 +87,9 @@ double ForbiddenRegion::energy(std::span<const BurrShape::Ball> balls, const Eig
   double sum = 0.0;
   const double bend = spring_ > 0.0 ? most_ / spring_ : 0.0;  // where the force grows no more [m]
   for (std::size_t n = 0; n < depths_.size(); ++n) {
-    const double mean = depth(n, balls, tip_B, axis_B).mean;
-    const double bent = std::min(mean, bend);
-    sum += 0.5 * spring_ * bent * bent + most_ * (mean - bent);
+    const double joint = depth(n, balls, tip_B, axis_B).joint;
+    const double bent = std::min(joint, bend);
+    sum += 0.5 * spring_ * bent * bent + most_ * (joint - bent);
   }
   return sum;
 }

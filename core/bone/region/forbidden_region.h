@@ -34,11 +34,11 @@ class RegionMap {
 /// A burr, n balls of radius r and centre c, is kept out of the margin m around each structure,
 /// whose signed distance is φ. With the depths p_b = r + m - φ(c) > 0 of its balls, else 0:
 ///
-///     f = min(k p, f_max) Σ (p_b / p)^7 ∇φ(c_b) / n,   p^8 = Σ p_b^8 / n
+///     f = min(k p, f_max) Σ (p_b / p)^31 ∇φ(c_b),   p^32 = Σ p_b^32
 ///
-/// One ball, or balls that are equally deep, have the force min(k p, f_max) ∇φ. If a burr lies
-/// between two sides of a structure, the force goes over from the one ball to the other without a
-/// step; one ball of n alone has n^(-1/8) of the depth.
+/// That is min(k p, f_max) ∇φ if one ball is the deepest; if n are equally deep, p is n^(1/32) of
+/// their depth (1.07 for nine). If a burr lies between two sides of a structure, the force goes
+/// over from the one ball to the other without a step.
 ///
 /// The force is minus the gradient of an energy, k p² / 2 and beyond p = f_max / k a line, so that
 /// nothing is gained on a closed path; it begins at 0 where the burr enters.
@@ -66,7 +66,7 @@ class ForbiddenRegion {
  private:
   struct Depth {
     double deepest{0.0};                               // of a ball [m]
-    double mean{0.0};                                  // p [m]
+    double joint{0.0};                                 // p [m]
     Eigen::Vector3d way_out{Eigen::Vector3d::Zero()};  // minus the gradient of p
   };
   Depth depth(std::size_t structure, std::span<const BurrShape::Ball> balls,

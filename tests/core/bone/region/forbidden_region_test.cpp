@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -206,8 +208,32 @@ TEST(ForbiddenRegionTest, ARodBetweenTwoSidesIsHandedOverWithoutAStep) {
     steepest = std::max(steepest, (force - before).norm() / kStep);
     before = force;
   }
-  EXPECT_LT(steepest, 20e3);  // [N/m]; a step of 2.5 N would be 2.5e6
+  EXPECT_LT(steepest, 40e3);  // [N/m]; a step of 2.5 N would be 2.5e6
   EXPECT_NEAR(force_at(0.0).norm(), 0.0, 1e-3);
+}
+
+/// A long burr that meets the nerve with its tip is held as its first ball alone; one that lies
+/// along the nerve has no more than 9^(1/32) of the depth and of the limit.
+TEST(ForbiddenRegionTest, TheTipOfALongBurrIsHeldAsStiffAsABall) {
+  const RegionSetup setup = setup_of(RegionKind::kHard);
+  ForbiddenRegion region = region_of(setup);
+  std::vector<BurrShape::Ball> burr;
+  for (int i = 0; i < 9; ++i) {
+    burr.push_back({0.75e-3 * i, 1e-3});
+  }
+  const auto force_at = [&](std::span<const BurrShape::Ball> balls, double depth,
+                            const Vector3d& axis) {
+    region.forget();
+    leave(region);
+    return region.tick(balls, Vector3d(kNerve + 1e-3 + setup.margin - depth, 0, 0), axis).x();
+  };
+  const double most = std::pow(9.0, 1.0 / 32.0);
+  for (const double depth : {0.5e-3, 1e-3, 2e-3, 3e-3, 4.5e-3}) {
+    const double ball = force_at(std::span(burr).first(1), depth, Vector3d::UnitX());
+    EXPECT_NEAR(force_at(burr, depth, Vector3d::UnitX()), ball, 1e-3 * ball) << depth;
+    EXPECT_GE(force_at(burr, depth, kAxis), 0.99 * ball) << depth;
+    EXPECT_LE(force_at(burr, depth, kAxis), 1.01 * most * most * ball) << depth;
+  }
 }
 
 TEST(ForbiddenRegionTest, ABurrThatIsInsideWhenItIsTakenIsNotThrownOut) {
