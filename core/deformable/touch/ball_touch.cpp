@@ -85,12 +85,13 @@ void BallTouch::start(const Vector3d& tool) noexcept {
   release(tool);
 }
 
-/// From rest alone, a ball that is deep in a body would find no place or others on its first tick.
+/// A ball that is deep in a body finds its places from those of the tick before. Without them its
+/// first tick would find none, or some on another side.
 void BallTouch::adopt(const BodyTouch& before, const Vector3d& tool) noexcept {
   start(tool);
   const auto* same = dynamic_cast<const BallTouch*>(&before);
   if (same == nullptr || same->tool_ != tool || same->options_.radius != options_.radius ||
-      !(same->body_ == body_ || same_mesh(same->body_->mesh(), body_->mesh()))) {
+      &same->body_->mesh() != &body_->mesh()) {
     return;
   }
   normal_force_ = same->normal_force_;

@@ -7,8 +7,8 @@
 namespace haptrial::deformable {
 
 /// The compliance of a body of a tissue, made when it is first asked for and shared by all who ask
-/// for the same (prepared_bodies.h): trials, participants, threads. Any thread but the
-/// servo thread.
+/// for the same (prepared_bodies.h): trials, participants, threads. Tissues of meshes that are
+/// alike have one mesh. Any thread but the servo thread.
 /// @throws InputError as check_tissue(), and before anything is made if the machine has not the
 /// memory that it takes.
 std::shared_ptr<const Compliance> prepared(const SharedHapticMesh& mesh, const Tissue& tissue);

@@ -72,7 +72,8 @@ class AdoptedTouchTest : public testing::Test {
   static SharedCompliance block_of(double young) {
     Tissue tissue = soft_tissue();
     tissue.young = young;
-    return std::make_shared<const Compliance>(soft_block(6), tissue);
+    static const SharedHapticMesh mesh = soft_block(6);
+    return std::make_shared<const Compliance>(mesh, tissue);
   }
   static constexpr double kDepth = 0.006;
   const Vector3d over_{0.0013, kTop + 0.006, 0.0007};

@@ -106,6 +106,9 @@ TEST(ComplianceTest, AHeldPlaceDoesNotMoveAndABallThatReachesItHasNoBound) {
 TEST(ComplianceTest, TheSameBodyIsPreparedOnce) {
   const auto first = prepared(soft_block(6), soft_tissue());
   EXPECT_EQ(first, prepared(soft_block(6), soft_tissue()));
+  Tissue firm = soft_tissue();
+  firm.young *= 1.3;
+  EXPECT_EQ(&first->mesh(), &prepared(soft_block(6), firm)->mesh()) << "for BallTouch::adopt()";
   Tissue other = soft_tissue();
   other.young *= 2.0;
   EXPECT_NE(first, prepared(soft_block(6), other));
