@@ -19,6 +19,7 @@ class Fade {
   double weight() const noexcept { return weight_; }
   bool on() const noexcept { return target_ > 0.0; }
   bool over() const noexcept { return time_ >= duration_; }
+  double left() const noexcept { return over() ? 0.0 : duration_ - time_; }  // [s]
 
  private:
   double slope() const noexcept;

@@ -156,6 +156,15 @@ void Scene::switch_to(std::uint64_t mask) noexcept {
   }
 }
 
+void Scene::switch_off(double longest) noexcept {
+  switch_to(0);
+  for (Part& part : parts_) {
+    if (part.fade.left() > longest) {
+      part.fade.turn(false, longest);
+    }
+  }
+}
+
 void Scene::restart_with(std::uint64_t mask) noexcept {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     if (parts_[i].timed && (mask >> i & 1u) != 0) {

@@ -45,6 +45,8 @@ class Scene {
   /// is switched on begins anew (its time, filters and extremes) at the next tick, except that one
   /// without a course in time goes on if it still fades out.
   void switch_to(std::uint64_t mask) noexcept;
+  /// All fields fade out, and those that do so already are through within `longest` [s].
+  void switch_off(double longest) noexcept;
   /// The same, but fields with a course in time begin anew, even if they are on already: an
   /// interval begins, or is repeated.
   void restart_with(std::uint64_t mask) noexcept;

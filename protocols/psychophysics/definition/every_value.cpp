@@ -100,25 +100,6 @@ void check_reach(const TrialsDefinition& d, const Presented& presented) {
   }
 }
 
-/// A hand that marks its answer is not to be pushed by what the last stage left.
-void check_fades(const TrialsDefinition& d, const Presented& presented) {
-  constexpr double kLongest = 1.0;  // [s]
-  const bool marks = std::ranges::any_of(d.questions, [](const TrialQuestion& question) {
-    return question.mark.by == MarkedBy::kHand;
-  });
-  const std::uint64_t last = presented.stages.empty() ? 0 : presented.stages.back().stage.fields;
-  for (std::size_t i = 0; marks && i < presented.fields.size(); ++i) {
-    const scene::Field& field = presented.fields[i];
-    if ((last >> i & 1U) != 0 && field.fade_out > kLongest) {
-      throw InputError(fmt::format(
-          "{}: {}.{} has a fade_out of {:g} s; allowed: at most {:g} [s], since a question that "
-          "the hand answers (by = \"hand\") follows, during which no force is to act",
-          d.file_name, scene::traits_of(field).object ? "objects" : "fields", field.name,
-          field.fade_out, kLongest));
-    }
-  }
-}
-
 /// The diagonal of an object's box [m]; 0: the field is no object, or its mesh is not known.
 double object_size(const scene::Field& field) {
   if (const auto* solid = std::get_if<scene::RigidObjectParameters>(&field.kind)) {
@@ -276,7 +257,6 @@ void EveryValue::present_interval(Table& root, Names& names, std::size_t place) 
   check_forces(d_, presented);
   check_objects(d_, presented.fields);
   check_reach(d_, presented);
-  check_fades(d_, presented);
   handle_.add(presented);
   picture_.add(presented);
   lead_.add(presented);

@@ -11,6 +11,8 @@
 namespace haptrial::protocols {
 namespace {
 
+constexpr double kLongestFade = 1.0;  // into an answer by hand [s]
+
 int lowest_bit(std::uint32_t bits) noexcept { return bits == 0 ? -1 : std::countr_zero(bits); }
 
 }  // namespace
@@ -369,8 +371,12 @@ void TrialPass::end_interval() noexcept {
     --sequence_;
     return;
   }
+  // No hand that marks its answer is pushed for long by what the intervals left.
+  const bool marks = std::ranges::any_of(setup_.questions, [](const PresentedQuestion& asked) {
+    return asked.question->mark.by == MarkedBy::kHand;
+  });
   for (scene::Scene& scene : setup_.intervals[interval_].scenes) {
-    scene.switch_to(0);
+    scene.switch_off(marks ? kLongestFade : std::numeric_limits<double>::infinity());
   }
   view_.interval = 0;
   view_.mark_count = 0;

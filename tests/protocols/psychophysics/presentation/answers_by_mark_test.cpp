@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/questions/scale_kind.h"
 #include "protocols/psychophysics/presentation/pass_rows.h"
@@ -14,7 +15,6 @@
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 #include "tests/support/allocation_guard.h"
-#include "tests/support/replaced.h"
 
 namespace haptrial::protocols::answers_by_mark_test {
 namespace {
@@ -39,15 +39,19 @@ TrialQuestion scale_by(MarkedBy by) {
 
 class AnswersByMarkTest : public testing::Test {
  protected:
-  void ask(MarkedBy by, double rightwards = 1.0) {
+  void ask(MarkedBy by, double rightwards = 1.0, const std::vector<scene::Field>& fields = {}) {
     question_ = scale_by(by);
     Stage feel;
-    feel.until.time = kStage * kDt;
+    feel.fields = fields.empty() ? 0b0 : 0b1;
+    feel.until.time = kStage / 2 * kDt;
+    Stage rest;
+    rest.until.time = kStage / 2 * kDt;
     std::vector<scene::Scene> scenes;
-    scenes.emplace_back(std::vector<scene::Field>{}, 1.0 / kDt);
+    scenes.emplace_back(fields, 1.0 / kDt);
     TrialPass::Setup setup;
-    setup.intervals.push_back({std::move(scenes), StageMachine({feel}, {}, 0), {}, 0, -1});
-    setup.intervals.back().sights.resize(1);
+    setup.intervals.push_back(
+        {std::move(scenes), StageMachine({feel, rest}, {}, fields.size()), {}, 0, -1});
+    setup.intervals.back().sights.resize(2);
     setup.questions.push_back({&question_});
     setup.questions.back().rightwards = rightwards;
     pass_.emplace(std::move(setup));
@@ -200,16 +204,22 @@ TEST(MarkMeansTest, MistakesAreNamed) {
       << "numbers have no mark";
 }
 
-TEST(MarkMeansTest, NoFieldActsForLongWhileTheHandMarks) {
-  const auto problems = [](const char* by, const char* fade) {
-    return problems_of_trials(
-        test::replaced(asking(std::string("scale = [0, 10]\nby = \"") + by + "\"\n"),
-                       "damping = 0.0\n", std::string("damping = 0.0\nfade_out = ") + fade + "\n"));
+/// A constant force that was left in the first stage and would fade for a minute.
+TEST_F(AnswersByMarkTest, NoFieldActsForLongWhileTheHandMarks) {
+  scene::Field push;
+  push.name = "push";
+  push.kind = scene::ConstantParameters{{1.0, 0.0, 0.0}};
+  push.fade_in = 0.0;
+  push.fade_out = 60.0;
+  const auto force_after = [&](MarkedBy by, int ticks) {
+    ask(by, 1.0, {push});
+    hold(ticks);
+    return out_.force.norm();
   };
-  EXPECT_THAT(problems("hand", "1.0"), IsEmpty());
-  EXPECT_THAT(problems("keys", "60.0"), IsEmpty());
-  EXPECT_THAT(problems("hand", "60.0"),
-              Contains(HasSubstr("fields.floor has a fade_out of 60 s; allowed: at most 1 [s]")));
+  EXPECT_GT(force_after(MarkedBy::kHand, 0), 0.9) << "it is on when the question begins";
+  EXPECT_GT(force_after(MarkedBy::kHand, 500), 0.1) << "it takes no step";
+  EXPECT_EQ(force_after(MarkedBy::kHand, 1001), 0.0);
+  EXPECT_GT(force_after(MarkedBy::kMouse, 1001), 0.9) << "this hand gives no answer";
 }
 
 }  // namespace
