@@ -1,6 +1,7 @@
 #include "core/base/stated_words.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <locale>
 #include <stdexcept>
 #include <string>
@@ -45,15 +46,47 @@ std::wstring small_letters(std::string_view text) {
   return small;
 }
 
+/// Scripts that are written without spaces between words.
+bool is_unspaced(wchar_t letter) {
+  struct Range {
+    std::uint32_t first, last;
+  };
+  constexpr Range kUnspaced[] = {
+      {0x0E00, 0x0EFF},    // Thai, Lao
+      {0x1000, 0x109F},    // Myanmar
+      {0x1780, 0x17FF},    // Khmer
+      {0x3005, 0x3007},    // marks among Han characters
+      {0x3040, 0x30FF},    // Hiragana, Katakana
+      {0x31F0, 0x31FF},    // Katakana
+      {0x3400, 0x4DBF},    // Han
+      {0x4E00, 0x9FFF},    // Han
+      {0xF900, 0xFAFF},    // Han
+      {0xFF66, 0xFF9F},    // Katakana of half width
+      {0x20000, 0x3FFFF},  // Han
+  };
+  const auto number = static_cast<std::uint32_t>(letter);
+  return std::ranges::any_of(kUnspaced, [number](const Range& range) {
+    return number >= range.first && number <= range.last;
+  });
+}
+
+/// Whether two characters in a row may be of one word.
+bool joins(wchar_t before, wchar_t after) {
+  const auto continues = [](wchar_t character) {
+    return std::isalnum(character, letters()) && !is_unspaced(character);
+  };
+  return continues(before) && continues(after);
+}
+
 }  // namespace
 
 bool has_stated_word(std::string_view text, std::string_view word) {
   const std::wstring all = small_letters(text), wanted = small_letters(word);
-  const auto joins = [&](std::size_t at) { return std::isalnum(all[at], letters()); };
   for (auto at = all.find(wanted); !wanted.empty() && at != std::wstring::npos;
        at = all.find(wanted, at + 1)) {
     const std::size_t end = at + wanted.size();
-    if ((at == 0 || !joins(at - 1)) && (end == all.size() || !joins(end))) {
+    if ((at == 0 || !joins(all[at - 1], all[at])) &&
+        (end == all.size() || !joins(all[end - 1], all[end]))) {
       return true;
     }
   }

@@ -25,5 +25,15 @@ TEST(StatedWordsTest, CapitalsOfEveryAlphabetAreTheSame) {
   EXPECT_TRUE(has_stated_word("ill\xff", "ILL\xff")) << "no UTF-8";
 }
 
+TEST(StatedWordsTest, InScriptsWithoutSpacesAWordMayStandAnywhere) {
+  EXPECT_TRUE(has_stated_word("眠いので", "眠い"));
+  EXPECT_TRUE(has_stated_word("手が滑った", "滑"));
+  EXPECT_TRUE(has_stated_word("我感到不舒服了", "不舒服"));
+  EXPECT_TRUE(has_stated_word("รู้สึกง่วงมาก", "ง่วง"));
+  EXPECT_TRUE(has_stated_word("少しpainあり", "pain"));
+  EXPECT_FALSE(has_stated_word("眠いので", "痛い"));
+  EXPECT_FALSE(has_stated_word("少しpainful", "pain"));
+}
+
 }  // namespace
 }  // namespace haptrial
