@@ -15,6 +15,8 @@ namespace haptrial {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr auto kSameOwner = static_cast<uid_t>(-1);
+
 std::string reason(int error) { return std::system_category().message(error); }
 
 bool is_there(const fs::path& file) noexcept {
@@ -29,12 +31,15 @@ fs::path target_of(const fs::path& file) {
   return error || !fs::is_symlink(file, error) ? file : target;
 }
 
-/// Gives a file the mode and the owner of the one that it replaces. Only the superuser may give
-/// files away, so the owner is that of the writer elsewhere.
+/// Gives a file the mode, the owner and the group of the one that it replaces. Only the superuser
+/// may give files away, so for anybody else the owner is the writer; the group stays if the writer
+/// is a member of it.
 void keep_access(const fs::path& part, const fs::path& replaced) {
   struct stat before {};
   if (stat(replaced.c_str(), &before) == 0) {
-    [[maybe_unused]] const int owner = chown(part.c_str(), before.st_uid, before.st_gid);
+    if (chown(part.c_str(), before.st_uid, before.st_gid) != 0) {
+      [[maybe_unused]] const int group = chown(part.c_str(), kSameOwner, before.st_gid);
+    }
     chmod(part.c_str(), before.st_mode & 0777);
   }
 }

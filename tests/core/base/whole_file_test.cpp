@@ -1,6 +1,9 @@
 #include "core/base/whole_file.h"
 
+#include <grp.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -35,6 +38,34 @@ TEST(WholeFileTest, AReplacedFileKeepsItsMode) {
     EXPECT_EQ(file_text(file), "new");
     EXPECT_EQ(fs::status(file).permissions(), mode);
   }
+}
+
+/// Two people of one group change each other's files. Only the superuser can be both of them here.
+TEST(WholeFileTest, AReplacedFileOfAnotherOwnerKeepsItsGroup) {
+  if (geteuid() != 0) {
+    GTEST_SKIP() << "takes the superuser";
+  }
+  constexpr uid_t kBob = 40001, kAlice = 40002;
+  constexpr gid_t kLab = 40003;
+  const test::TemporaryFolder folder;
+  const fs::path file = folder / "study.toml";
+  std::ofstream(file) << "old";
+  fs::permissions(file, fs::perms(0660));
+  ASSERT_EQ(chown(file.c_str(), kBob, kLab), 0);
+  ASSERT_EQ(chown(folder.path().c_str(), kAlice, kLab), 0);
+  ASSERT_EQ(setgroups(1, &kLab), 0);
+  ASSERT_EQ(setegid(kAlice), 0);
+  ASSERT_EQ(seteuid(kAlice), 0);
+  EXPECT_NO_THROW(write_whole(file, "new"));
+  ASSERT_EQ(seteuid(0), 0);
+  ASSERT_EQ(setegid(0), 0);
+  ASSERT_EQ(setgroups(0, nullptr), 0);
+  EXPECT_EQ(file_text(file), "new");
+  struct stat now {};
+  ASSERT_EQ(stat(file.c_str(), &now), 0);
+  EXPECT_EQ(now.st_uid, kAlice);
+  EXPECT_EQ(now.st_gid, kLab);
+  EXPECT_EQ(now.st_mode & 0777, 0660U);
 }
 
 TEST(WholeFileTest, AReplacedFileIsPrivateUntilItIsThere) {
