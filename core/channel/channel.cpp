@@ -16,12 +16,13 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kLook{20};  // for the end of the session, and for silence
 constexpr milliseconds kUntilBegin{1};
-constexpr milliseconds kRetry{500};  // until a lost instrument is opened again
-constexpr double kSilence = 2.0;     // until a silent one is [s]
-constexpr int kMostSteps = 10;       // of a clock, in samples in turn
-constexpr std::size_t kBlock = 256;  // samples in a block of the log
-constexpr double kKept = 4.0;        // for which the log has room [s]
-constexpr double kUnseen = 0.5;      // that the servo thread may be late [s]
+constexpr milliseconds kRetry{500};            // until a lost instrument is opened again
+constexpr double kSilence = 2.0;               // until a silent one is [s]
+constexpr int kMostSteps = 5;                  // of a clock, each soon after the one before
+constexpr std::int64_t kSoon = 3'000'000'000;  // after a step of a clock [ns]
+constexpr std::size_t kBlock = 256;            // samples in a block of the log
+constexpr double kKept = 4.0;                  // for which the log has room [s]
+constexpr double kUnseen = 0.5;                // that the servo thread may be late [s]
 constexpr std::size_t kLeastBlocks = 16;
 constexpr std::size_t kUnseenBlocks = 4;
 constexpr std::size_t kMostIncidents = 10000;  // that wait for the session
@@ -149,17 +150,19 @@ void Channel::take(const Measured& sample) {
   show(heard_ || lost_ns_ < 0);
 }
 
-/// The time by the instrument's clock. A clock that steps with every sample tells no time.
+/// The time by the instrument's clock. A clock that steps again and again tells no time: one that
+/// runs too fast steps with every sample, one that runs too slow about twice a second.
 SampleTime Channel::clocked(const Measured& sample, std::int64_t received_ns) {
   const SampleTime time = clock_.time_of(sample.device_time, received_ns, sample.waited);
   if (time.step == 0.0) {
-    steps_ = 0;
-  } else if (++steps_ < kMostSteps) {
-    note(Incident::kClockStep, time.step);
-  } else {
-    note(Incident::kClockStep, time.step,
-         "it steps with every sample, so that times are those of arrival; is its unit right?");
+    steps_ = received_ns - stepped_ns_ > kSoon ? 0 : steps_;
+    return time;
   }
+  stepped_ns_ = received_ns;
+  note(Incident::kClockStep, time.step,
+       ++steps_ < kMostSteps
+           ? ""
+           : "it steps again and again, so that times are those of arrival; is its unit right?");
   return time;
 }
 

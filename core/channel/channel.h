@@ -97,7 +97,8 @@ class Channel final : private ChannelInbox {
   // The channel's thread.
   std::unique_ptr<ChannelSource> source_;
   SampleClock clock_;
-  int steps_{0};  // of its clock, in samples in turn; kMostSteps: it is no clock
+  int steps_{0};  // of its clock, each soon after the one before; kMostSteps: it is no clock
+  std::int64_t stepped_ns_{0};  // when its clock stepped last
   std::uint64_t next_;
   std::int64_t arrived_ns_{0};  // when a sample came last
   std::int64_t heard_ns_{0};    // when a useful one came last

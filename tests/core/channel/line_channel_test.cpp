@@ -223,8 +223,35 @@ patience = 60)"));
   }
   EXPECT_GT(test::share_within(run.rows(truth.size()), truth), 0.95);
   const auto steps = run.of_kind(Incident::kClockStep);
-  ASSERT_THAT(steps, SizeIs(10));
+  ASSERT_THAT(steps, SizeIs(5));
   EXPECT_THAT(steps.back().text, HasSubstr("is its unit right?"));
+}
+
+/// Such a clock runs too slow, so that it is late and never early.
+TEST_F(LineChannelTest, AClockInTooLargeAUnitIsSaidAndNotUsed) {
+  test::ChannelRun run(definition(R"(
+quantities = { grip = "N" }
+columns = ["millis", "grip"]
+clock = { column = "millis" }
+patience = 60)"));
+  const Printer printer(pipe_);
+  std::vector<double> truth;
+  for (int line = 0; line < 200; ++line) {
+    truth.push_back(1.0 + 0.04 * line);
+    run.set_now(truth.back());
+    printer.print(fmt::format("{:.3f},1\n", truth.back()));  // seconds
+    run.rows(truth.size());
+  }
+  const auto steps = run.of_kind(Incident::kClockStep);
+  ASSERT_THAT(steps, SizeIs(5));
+  EXPECT_THAT(steps.back().text, HasSubstr("is its unit right?"));
+  EXPECT_LT(1e-9 * static_cast<double>(steps.back().time_ns), 5.0);
+  for (const ChannelRow& row : run.rows(truth.size())) {
+    if (row.received_ns > steps.back().time_ns) {
+      EXPECT_LE(1e-9 * static_cast<double>(row.received_ns - row.time_ns), row.uncertainty);
+      EXPECT_LT(row.uncertainty, 0.04) << "half the time from line to line, and the line's own";
+    }
+  }
 }
 
 TEST_F(LineChannelTest, ALineThatComesAgainIsLeftOut) {
