@@ -210,6 +210,41 @@ TEST(ClockOffsetTest, AUnevenWayIsWrongByHalfTheDifference) {
   EXPECT_NEAR(static_cast<double>(clock.offset(5'000'000'000)), 10e6, 1.0);
 }
 
+/// A network that is as quick both ways becomes quicker or slower, at any time of a second: answers
+/// that went one way and came the other are no measure of the clocks.
+TEST(ClockOffsetTest, AChangeOfTheNetworkIsNoChangeOfTheClocks) {
+  for (const std::int64_t before : {40'000'000LL, 22'000'000LL, 200'000'000LL}) {
+    for (const std::int64_t after : {22'000'000LL, 40'000'000LL, 30'000'000LL}) {
+      for (std::int64_t phase = 0; phase < 1'000'000'000; phase += 7'000'000) {
+        const std::int64_t change = 5'000'000'000 + phase;
+        const auto way = [&](std::int64_t at) { return at < change ? before : after; };
+        ClockOffset clock;
+        std::int64_t worst = 0;
+        for (std::int64_t sent = 0; sent < 12'000'000'000; sent += 5'000'000) {
+          const std::int64_t came = sent + way(sent);
+          const std::int64_t now = came + way(came);
+          clock.add(sent, came, came, now);
+          worst = std::max(worst, std::abs(clock.offset(now)));
+        }
+        EXPECT_EQ(worst, 0) << before << ", " << after << ", " << phase;
+      }
+    }
+  }
+}
+
+/// The quickest answer of each second is another one each time; the clocks are compared all the
+/// same.
+TEST(ClockOffsetTest, ARestlessNetworkIsFollowedToo) {
+  constexpr std::int64_t kApart = 1'000'000'000;
+  ClockOffset clock;
+  for (std::int64_t sent = 0; sent < 60'000'000'000; sent += 5'000'000) {
+    const std::int64_t way = 20'000'000 + 30'000'000 * (sent / 1'000'000'000 % 2);
+    const std::int64_t drifted = kApart + sent / 10'000;
+    clock.add(sent, sent + way + drifted, sent + way + drifted, sent + 2 * way);
+  }
+  EXPECT_NEAR(clock.drift(), 1e-4, 1e-5);
+}
+
 TEST(JitterBufferTest, GivesOutEvenlyWhatCameUnevenly) {
   SimulatedChannel channel({0.03, 0.01, 0.0, 0.0, 1.0, 0.0}, 5, "jitter");
   JitterBuffer buffer(0.01, 200'000'000);
