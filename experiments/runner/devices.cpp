@@ -185,7 +185,8 @@ void check_reach(const device::DeviceInfo& info, const protocols::Definition& d)
 }
 
 /// Reports and warnings take the figures of the certificate for those of the device.
-/// @throws InputError for a certificate of another device
+/// Devices of one kind have one name, so that their certificates are not told apart.
+/// @throws InputError for a certificate of another kind of device
 void check_certificate(const device::DeviceInfo& info, const protocols::Definition& d) {
   if (d.certificate &&
       (d.certificate->simulated != info.simulated || d.certificate->device != info.name)) {
