@@ -9,13 +9,13 @@ namespace haptrial {
 
 /// A file that is written whole or not at all: the bytes go to FILE.partial-N beside it, which
 /// takes its name in finish(). Without that, or when the program is told to stop, nothing is left.
-/// A file that is replaced keeps its mode, and its owner where the system allows it; of a symbolic
-/// link the target is replaced.
+/// A file that is replaced keeps its mode, and its group and owner as far as the system allows it;
+/// the target of a symbolic link is replaced.
 class WholeFile {
  public:
   /// @param overwrite  replace a file that is there
   /// @param ending     what the part's name ends with, for programs that look at it: ".mp4"
-  /// @throws InputError where the file is there or cannot be made.
+  /// @throws InputError if the file is there or cannot be made.
   explicit WholeFile(std::filesystem::path file, bool overwrite = false,
                      std::string_view ending = "");
   ~WholeFile();
@@ -42,7 +42,7 @@ class WholeFile {
   [[noreturn]] void fail(const char* what, int error) const;
 
   std::filesystem::path file_;
-  std::filesystem::path target_;  // of file_, where that is a symbolic link; else file_
+  std::filesystem::path target_;  // of file_, if that is a symbolic link; else file_
   std::filesystem::path part_;
   bool overwrite_;
   bool finished_{false};
@@ -53,7 +53,7 @@ class WholeFile {
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 
 /// Gives a file a name that no other file has; unlike std::rename it never replaces one.
-/// @returns 0, or errno: EEXIST where there is a file of the name.
+/// @returns 0, or errno: EEXIST if there is a file of the name.
 int rename_to_new(const std::filesystem::path& from, const std::filesystem::path& to) noexcept;
 
 }  // namespace haptrial

@@ -70,7 +70,7 @@ bool is_name(std::string_view text) {
                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
 }
 
-constexpr const char* kEvents = "events";  // whose table is /channel_events
+constexpr const char* kEvents = "events";  // its table would be /channel_events
 constexpr const char* kNameForm = "a name of up to 40 letters, digits and '_'";
 
 std::vector<std::string> words() {

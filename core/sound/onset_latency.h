@@ -11,7 +11,9 @@ struct HeardOnset {
   double latency{0.0};  // from there to the first sample of the sound [s]
   bool heard{false};    // whether the sound is there
   double left{0.0};     // from the pulse to the first sample that stands out of the noise [s]
-  double off{0.0};      // of that from when it would, were the recording this sound alone [s]
+  /// How much later that is than for the sound alone, played at `latency`; below 0: something
+  /// precedes the sound [s]
+  double off{0.0};
 };
 
 /// Finds the pulses of a channel by half of the largest one, and after each the place at which the

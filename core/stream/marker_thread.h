@@ -70,7 +70,7 @@ class MarkerThread {
   // The thread's own.
   std::deque<TimedOnset> queue_;  // for the serial line
   bool high_{false};              // a code stands on the line
-  bool full_{false};              // which did not take the zero after it yet
+  bool full_{false};              // the line has not taken the zero after the code yet
   Clock::time_point due_{};       // when it ends, or when the next may begin
 
   mutable std::mutex mutex_;  // the two that follow

@@ -8,9 +8,10 @@ namespace haptrial::tutoring {
 using Eigen::Vector3d;
 using tutoring::Partner;
 
-static constexpr double kBackToOwnWorld = 0.05;  // from the partner's after a loss [s]
-
-static constexpr double kLongestCatchUp = 0.05;  // with a partner that skipped ticks [s]
+// After a loss the hand goes over from the partner's world to its own in this time [s].
+static constexpr double kBackToOwnWorld = 0.05;
+// A side that skipped ticks of its partner catches up within this time [s].
+static constexpr double kLongestCatchUp = 0.05;
 
 CoupledSide::CoupledSide(const SideParameters& parameters, const Vector3d& start)
     : p_(parameters),

@@ -41,8 +41,8 @@ class CoupledSide {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // on the own tool, in W [N]
     std::optional<TickMessage> message;              // to send
   };
-  /// A tick, after what arrived before it was heard. Without a link the force
-  /// goes over 50 ms, as the own world comes back.
+  /// A tick, after hear() of the messages that arrived before it. When the link is lost, the
+  /// partner's force falls to zero within 50 ms, as the own world comes back.
   Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
 
   /// Sets the force of the partner's world and the coupling that acts until the next tick, if
@@ -89,10 +89,10 @@ class CoupledSide {
   std::int64_t heard_ns_{0};  // when the newest came
   double energy_heard_{0.0};  // highest total
   tutoring::Partner partner_;
-  tutoring::Partner behind_;  // of partner_ behind what came, when ticks were skipped
-  double catch_up_{0.0};      // in which it catches up: the time that was skipped, within 50 ms [s]
-  double catching_up_{0.0};   // that is left of it [s]
-  Eigen::Vector3d last_place_;                       // of the own tool
+  tutoring::Partner behind_;    // difference of partner_ from what came, when ticks were skipped
+  double catch_up_{0.0};        // time over which it fades: as long as was skipped, up to 50 ms [s]
+  double catching_up_{0.0};     // the rest of that time [s]
+  Eigen::Vector3d last_place_;  // of the own tool
   Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
   bool stepped_{false};
   bool linked_{false};

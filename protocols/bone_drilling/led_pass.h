@@ -56,7 +56,7 @@ class LedPass final : public Pass {
   DrillingInput input_;
   DrillingRows rows_;
   bone::BoneTouch touch_;
-  int tool_;                   // with which the hand felt last
+  int tool_;                   // the one with which the hand felt last
   bone::SimulatorInput last_;  // of the other side's tool
   PassOutput out_;             // of the last tick on which nobody else had the bone
   std::uint64_t sequence_{0};

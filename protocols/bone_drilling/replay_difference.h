@@ -10,7 +10,7 @@
 #include "core/bone/simulator/simulator.h"
 
 // A tick of a drilling that is simulated again beside the rows that the session wrote on it. Each
-// function gives a sentence, which is empty where both are the same.
+// function gives a sentence, which is empty if both are the same.
 namespace haptrial::protocols {
 
 /// The voxels that a tick emptied, in any order: while a part comes off, a session looks at it
@@ -18,7 +18,7 @@ namespace haptrial::protocols {
 std::string difference(std::uint64_t sequence, std::span<const record::RemovalRow> recorded,
                        std::span<const bone::EmptiedIn> emptied);
 
-/// The tissue that tore on a tick, to the bit.
+/// The tears of a tick, to the bit.
 std::string difference(std::uint64_t sequence, std::span<const record::TearRow> recorded,
                        std::span<const bone::Tear> torn);
 
@@ -26,7 +26,7 @@ std::string difference(std::uint64_t sequence, std::span<const record::TearRow> 
 std::string difference(std::uint64_t sequence, std::span<const record::PieceRow> recorded,
                        const bone::Simulator& simulator);
 
-/// How the screws of a tick's rows hold, to the bit.
+/// The hold of the screws of a tick's rows, to the bit.
 std::string difference(std::uint64_t sequence, std::span<const record::ScrewRow> recorded,
                        const bone::Screws& screws);
 

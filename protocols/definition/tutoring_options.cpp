@@ -97,7 +97,7 @@ const Schema<TutoringOptions>& tutoring_schema() {
                 "Whether the other hand's ticks are taken as evenly as they were sent, at the cost "
                 "of some delay")
           .number("deadline", &O::deadline, {0.01, 5.0}, "s",
-                  "Silence of a link after which its force goes, over 50 ms")
+                  "Silence of a link after which its force falls to zero within 50 ms")
           .number("patience", &O::patience, {1.0, 600.0}, "s",
                   "Silence of a link after which the session ends, to be resumed")
           .table("channel", &O::channel, tutoring::channel_schema(),
