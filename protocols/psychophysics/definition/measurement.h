@@ -41,8 +41,9 @@ class Measurement {
   /// Takes the quantity of a tick, in SI; one that is not finite is left out.
   void add(double value) noexcept;
   /// Takes what a channel gave on a tick: each sample of `place` that was measured in the stage.
-  /// The newest value stands for the stage while none was. @param in_stage  time of the tick in it
-  /// [s]
+  /// Samples that come after its end count for no stage. While none has come, the newest value
+  /// stands for the stage, though it may have been measured before. @param in_stage  time of the
+  /// tick in it [s]
   void add_samples(std::span<const device::ArrivedValue> arrived, std::size_t place, double newest,
                    double in_stage) noexcept;
   /// Takes the place of a tick, from which the way since the tick before follows [m].

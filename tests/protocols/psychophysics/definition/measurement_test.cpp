@@ -74,7 +74,7 @@ TEST(MeasurementTest, WithoutATickThereIsNoValue) {
 
 /// Samples 0, 1, 2, … 99 of place 1, ten at a time, on every tenth tick; the first five are of the
 /// stage before.
-TEST(MeasurementTest, EverySampleOfAChannelThatWasMeasuredInTheStageCounts) {
+TEST(MeasurementTest, EverySampleThatWasMeasuredInTheStageAndCameBeforeItsEndCounts) {
   const auto of_bundles = [](S statistic, double last) {
     Measurement taken(measure_of(Q::kChannel, statistic, last), kRate);
     taken.begin();
