@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -192,23 +196,38 @@ const channel::ChannelOptions& channel_of(const TrialsDefinition& d, std::size_t
   return *channel;
 }
 
+/// The longest time for which the sine in a channel's place is above a bound [s]
+double time_above(const channel::SimulatedInput& sine, double bound) {
+  const double above_mean = bound - sine.mean;
+  if (!(std::abs(above_mean) < sine.amplitude)) {
+    return above_mean < 0.0 ? std::numeric_limits<double>::infinity() : 0.0;
+  }
+  return std::acos(above_mean / sine.amplitude) / (std::numbers::pi * sine.frequency);
+}
+
 /// Adds a sentence on each stage that ends a trial of a dry run, since it waits for a value that
 /// the sine in the channel's place never has.
+/// @param sentences  each with the words of the first values with which it holds
 void note_unreached(const TrialsDefinition& d, const Presented& presented,
-                    std::set<std::string>& sentences) {
+                    const TrialValues& values, std::map<std::string, std::string>& sentences) {
   for (const NamedStage& stage : presented.stages) {
     const Until& until = stage.stage.until;
     if (!until.channel || stage.stage.late == Consequence::kGoOn) {
       continue;
     }
     const channel::ChannelOptions& channel = channel_of(d, *until.channel);
-    const double low = channel.simulated.mean - channel.simulated.amplitude;
-    const double high = channel.simulated.mean + channel.simulated.amplitude;
-    if (high <= until.above || low >= until.below) {
-      sentences.insert(fmt::format(
-          "stage {} waits for a value of channel {} that a dry run never has: it goes from {:g} to "
-          "{:g} there (channels.{}.simulated), so that no trial gets on",
-          stage.name, channel.name, low, high, channel.name));
+    const channel::SimulatedInput& sine = channel.simulated;
+    const double longest =
+        std::min(time_above(sine, until.above), time_above(sine, 2.0 * sine.mean - until.below));
+    if (longest <= 0.0 || longest < until.hold) {
+      sentences.emplace(
+          fmt::format("stage {} waits for a value of channel {} that a dry run never has{}: it "
+                      "goes from {:g} to {:g} there (channels.{}.simulated), so that no trial with "
+                      "such a stage gets on",
+                      stage.name, channel.name,
+                      until.hold > 0.0 ? fmt::format(" for {:g} s", until.hold) : "",
+                      sine.mean - sine.amplitude, sine.mean + sine.amplitude, channel.name),
+          words_of(d, values));
     }
   }
 }
@@ -230,7 +249,7 @@ class EveryValue {
 
   void check_block(std::size_t block);
   void present(const TrialValues& values);
-  void present_interval(Table& root, Names& names, std::size_t place);
+  void present_interval(Table& root, Names& names, const TrialValues& values, std::size_t place);
   std::pair<std::size_t, double> visit(std::size_t block, const std::vector<Dimension>& dimensions,
                                        const std::function<void(const TrialValues&)>& look) const;
   std::vector<Dimension> levels_of(std::size_t block) const;
@@ -244,13 +263,14 @@ class EveryValue {
   bool first_{true};                 // nothing was presented yet
   std::vector<std::string> bodies_;  // words about rigid ones
   std::vector<std::string> cut_;     // sentences on blocks that have too many combinations
-  std::set<std::string> unreached_;  // sentences on stages that wait for a channel in vain
-  std::set<std::string> read_;       // names that the block's values depend on
+  std::map<std::string, std::string> unreached_;  // on stages that wait for a channel in vain
+  std::set<std::string> read_;                    // names that the block's values depend on
 };
 
 constexpr const char* kPlaces[] = {"group", "session", "participant", "trial"};
 
-void EveryValue::present_interval(Table& root, Names& names, std::size_t place) {
+void EveryValue::present_interval(Table& root, Names& names, const TrialValues& values,
+                                  std::size_t place) {
   Presented presented = read_presented(root, names, d_, nullptr);
   root.check();
   scene::Scene(presented.fields, d_.rate);
@@ -260,7 +280,7 @@ void EveryValue::present_interval(Table& root, Names& names, std::size_t place) 
   handle_.add(presented);
   picture_.add(presented);
   lead_.add(presented);
-  note_unreached(d_, presented, unreached_);
+  note_unreached(d_, presented, values, unreached_);
   prepare_moving_bodies(presented.fields, d_.rate);
   if (std::exchange(first_, false) && place == 0) {
     check_bodies(presented.fields);
@@ -275,7 +295,7 @@ void EveryValue::present(const TrialValues& values) {
     for (std::size_t place = 0; place < d_.intervals.size(); ++place) {
       give(*names, d_, values);
       give_interval(*names, d_.intervals[values.intervals[place]], place);
-      present_interval(root, *names, place);
+      present_interval(root, *names, values, place);
     }
     give(*names, d_, values);
     for (const TrialQuestion& question : d_.questions) {
@@ -485,7 +505,9 @@ HandleText EveryValue::check() {
   for (const auto& said : {picture_.warnings(), lead_.warnings(), cut_}) {
     words.warnings.insert(words.warnings.end(), said.begin(), said.end());
   }
-  words.warnings.insert(words.warnings.end(), unreached_.begin(), unreached_.end());
+  for (const auto& [sentence, values] : unreached_) {
+    words.warnings.push_back(fmt::format("{} (first with {})", sentence, values));
+  }
   words.lines.insert(words.lines.begin(), bodies_.begin(), bodies_.end());
   return words;
 }

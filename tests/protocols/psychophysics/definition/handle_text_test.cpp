@@ -92,7 +92,13 @@ TEST(HandleTextTest, AValueThatADryRunNeverHasIsWarnedOf) {
   EXPECT_THAT(waiting("2.0", "abort", ""),
               Contains(AllOf(HasSubstr("stage feel waits for a value of channel grip"),
                              HasSubstr("from 0 to 0"))));
-  EXPECT_THAT(waiting("2.5", "abort", sine), Contains(HasSubstr("from -0.5 to 2.5")));
+  EXPECT_THAT(waiting("2.5", "abort", sine),
+              Contains(AllOf(HasSubstr("from -0.5 to 2.5"), HasSubstr("(first with block "))));
+  // A sine of 0.5 Hz is above its mean for a second, and above 1.75 for a third of its period.
+  EXPECT_THAT(waiting("1.0, for = 1.1", "abort", sine), Contains(HasSubstr("never has for 1.1 s")));
+  EXPECT_THAT(waiting("1.0, for = 0.9", "abort", sine), Not(Contains(HasSubstr("grip"))));
+  EXPECT_THAT(waiting("1.75, for = 0.68", "abort", sine), Contains(HasSubstr("for 0.68 s")));
+  EXPECT_THAT(waiting("1.75, for = 0.65", "abort", sine), Not(Contains(HasSubstr("grip"))));
   EXPECT_THAT(waiting("2.0", "abort", sine), Not(Contains(HasSubstr("grip"))));
   EXPECT_THAT(waiting("2.0", "go on", ""), Not(Contains(HasSubstr("grip"))));
 }
