@@ -16,17 +16,18 @@ namespace {
 constexpr double kGrowthInDoubt = 2.0;  // times the holding force, while readings are suspicious
 constexpr double kFallInDoubt = 20.0;   // while the position may be frozen [N/s]
 constexpr double kNotFelt = 0.2;        // change of force in a tick [N]
-constexpr double kShortestFade = 0.05;  // [s]
-constexpr double kLongestFade = 10.0;   // that was ever recorded [s]
-// A force that fades gives way to no hand: within these times a hand that lets go is not pushed
-// far.
-constexpr double kLongestChange = 0.2;      // [s]
-constexpr double kLongestRampOut = 0.5;     // [s]
-constexpr double kLongestAtLimit = 3.0;     // [s]
-constexpr double kLargestHolding = 2.0;     // [N]
-constexpr double kFastestForce = 10'000.0;  // [N/s]
+
+// Bounds of a session that begins. No value takes a check out of use: ramps and changes are no
+// steps, and as a force that fades gives way to no hand, one that lets go is not pushed far.
+constexpr Bounds kForceRate{10.0, 10'000.0};  // [N/s]
+constexpr Bounds kRampIn{0.05, 10.0};         // [s]
+constexpr Bounds kRampOut{0.05, 0.5};         // [s]
+constexpr Bounds kChange{0.05, 0.2};          // [s]
+constexpr Bounds kSaturation{0.0, 3.0};       // [s]
+constexpr Bounds kHolding{0.0, 2.0};          // [N]
 
 }  // namespace
+
 const Schema<EnvelopeLimits>& envelope_schema() {
   using E = EnvelopeLimits;
   static const auto schema =
@@ -34,8 +35,8 @@ const Schema<EnvelopeLimits>& envelope_schema() {
           .number("max_force", &E::max_force, {0.0, 100.0, true}, "N",
                   "Greatest force that is commanded; a protocol that asks for more is stopped")
           .required()
-          .number("max_force_rate", &E::max_force_rate, {10.0, kFastestForce}, "N/s",
-                  "Fastest change of the commanded force")
+          .number("max_force_rate", &E::max_force_rate, {10.0, 1e6}, "N/s",
+                  "Fastest change of the commanded force; up to 10,000 N/s in a new session")
           .required()
           .number("workspace_radius", &E::workspace_radius, {0.0, 2.0, true}, "m",
                   "Distance from the origin beyond which the force is switched off")
@@ -46,34 +47,42 @@ const Schema<EnvelopeLimits>& envelope_schema() {
           .number("max_jump", &E::max_jump, {0.0, 0.1, true}, "m",
                   "Largest change of position between two ticks; a larger one ends the pass")
           .required()
-          .number("ramp_in", &E::ramp_in, {kShortestFade, 10.0}, "s",
-                  "Time over which the force of a pass grows from zero")
+          .number("ramp_in", &E::ramp_in, {0.0, 10.0}, "s",
+                  "Time over which the force of a pass grows from zero; 0.05 s or more in a new "
+                  "session")
           .required()
-          .number("ramp_out", &E::ramp_out, {kShortestFade, kLongestFade}, "s",
-                  "Time over which the force falls to zero after a normal end; at most 0.5 s in a "
+          .number("ramp_out", &E::ramp_out, {0.0, 10.0}, "s",
+                  "Time over which the force falls to zero after a normal end; 0.05 to 0.5 s in a "
                   "new session")
           .required()
           .number(
-              "change_time", &E::change_time, {kShortestFade, kLongestFade}, "s",
+              "change_time", &E::change_time, {0.0, 10.0}, "s",
               "Time over which the force goes over to that of another stage, question or object; "
-              "at most 0.2 s in a new session")
-          .number("max_saturation", &E::max_saturation, {0.0, kLongestAtLimit, true}, "s",
-                  "Longest time without a break at max_force; a longer one ends the pass")
-          .number("holding_force", &E::holding_force, {0.0, kLargestHolding, true}, "N",
+              "0.05 to 0.2 s in a new session")
+          .number("max_saturation", &E::max_saturation, {0.0, 600.0, true}, "s",
+                  "Longest time without a break at max_force; a longer one ends the pass; up to 3 "
+                  "s in a new session")
+          .number("holding_force", &E::holding_force, {0.0, 10.0, true}, "N",
                   "Change of force that a still hand and friction may hide; beyond it a position "
-                  "that does not change counts as frozen")
+                  "that does not change counts as frozen; up to 2 N in a new session")
           .otherwise("from the friction of [hand]");
   return schema;
 }
 
-void check_fades(Table& table, const EnvelopeLimits& limits) {
-  const auto check = [&table](const char* key, double value, double most) {
-    if (value > most) {
-      table.reject(key, fmt::format("{:g}", value), fmt::format("at most {:g} [s]", most));
+void check_new_envelope(Table& table, const EnvelopeLimits& limits) {
+  const auto check = [&table](const char* key, double value, const Bounds& bounds,
+                              const char* unit) {
+    if (table.has(key) && !(value >= bounds.low && value <= bounds.high)) {
+      table.reject(key, fmt::format("{:g}", value),
+                   fmt::format("{:g} to {:g} [{}]", bounds.low, bounds.high, unit));
     }
   };
-  check("ramp_out", limits.ramp_out, kLongestRampOut);
-  check("change_time", limits.change_time, kLongestChange);
+  check("max_force_rate", limits.max_force_rate, kForceRate, "N/s");
+  check("ramp_in", limits.ramp_in, kRampIn, "s");
+  check("ramp_out", limits.ramp_out, kRampOut, "s");
+  check("change_time", limits.change_time, kChange, "s");
+  check("max_saturation", limits.max_saturation, kSaturation, "s");
+  check("holding_force", limits.holding_force, kHolding, "N");
 }
 
 Envelope::Envelope(const EnvelopeLimits& limits)

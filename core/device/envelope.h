@@ -30,13 +30,11 @@ struct EnvelopeLimits {
   double holding_force{0.5};  // change of force that friction and a still hand may hide > 0 [N]
 };
 
-/// The keys of [envelope]. No value takes a check out of use: ramps and changes last 0.05 s at
-/// least.
+/// The keys of [envelope], with the bounds that any version recorded.
 const Schema<EnvelopeLimits>& envelope_schema();
 
-/// Notes fades that are too long for a session that begins; recorded ones may have them.
-/// @param table  [envelope]
-void check_fades(Table& table, const EnvelopeLimits& limits);
+/// Notes values with which no session may begin. @param table  [envelope]
+void check_new_envelope(Table& table, const EnvelopeLimits& limits);
 
 /// Stands between every protocol and every device on every tick. The force that leaves it is
 /// finite, never longer than max_force and never changes faster than max_force_rate, except that a

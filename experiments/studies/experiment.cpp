@@ -41,7 +41,7 @@ void refuse_session(const std::filesystem::path& file) {
 /// version adds, stand here and not in a schema, since recordings of every version can be read.
 void check_new_session(Table& root, const protocols::Definition& definition) {
   Table envelope = root.table("envelope");
-  device::check_fades(envelope, definition.envelope);
+  device::check_new_envelope(envelope, definition.envelope);
   channel::check_lines(root, definition.channels);
   if (!root.is_table("tutoring")) {
     return;

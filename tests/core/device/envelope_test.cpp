@@ -538,7 +538,9 @@ TEST(EnvelopeTest, NoKeyTakesACheckOutOfUse) {
         "max_force = 8.0\nworkspace_radius = 0.08\nmax_speed = 1.0\nmax_jump = 0.005\n" + line +
             "\n",
         "study.toml");
-    envelope_schema().read(table);
+    const EnvelopeLimits limits = envelope_schema().read(table);
+    EXPECT_NO_THROW(table.finish()) << "recordings may have it";
+    check_new_envelope(table, limits);
     const std::string said = test::message_of([&] { table.finish(); });
     EXPECT_NE(said.find(line.substr(0, line.find(' '))), std::string::npos) << said;
   };
@@ -546,8 +548,10 @@ TEST(EnvelopeTest, NoKeyTakesACheckOutOfUse) {
   refused("max_saturation = 600.0\n" + rest);
   refused("holding_force = 10.0\n" + rest);
   refused("change_time = 0.0\n" + rest);
+  refused("change_time = 0.3\n" + rest);
   refused("ramp_in = 0.0\nramp_out = 0.2\nmax_force_rate = 4000.0");
   refused("ramp_out = 0.0\nramp_in = 0.2\nmax_force_rate = 4000.0");
+  refused("ramp_out = 1.0\nramp_in = 0.2\nmax_force_rate = 4000.0");
   refused("max_force_rate = 1e6\nramp_in = 0.2\nramp_out = 0.2");
 }
 
