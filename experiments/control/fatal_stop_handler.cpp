@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 
 #include "experiments/control/interrupt.h"
 #include "experiments/control/keyboard.h"
@@ -49,6 +50,7 @@ extern "C" void stop_and_die(int signal) {
 }
 
 WatchedStop::WatchedStop(FatalStopHandler& stop) noexcept {
+  [[maybe_unused]] static const int at_exit = std::atexit(take_force_away);
   registered.store(&stop);
   call_on_interrupt([](void* each) { static_cast<FatalStopHandler*>(each)->ask(); }, &stop);
 }

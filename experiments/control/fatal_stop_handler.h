@@ -15,7 +15,8 @@ class FatalStopHandler {
 };
 
 /// Stop that is watched while the object lives: an interrupt asks for it, and a signal that kills
-/// the program takes the force away first. At most one at a time.
+/// the program takes the force away first, and so does a library that calls exit(). At most one at
+/// a time.
 class WatchedStop {
  public:
   explicit WatchedStop(FatalStopHandler& stop) noexcept;  // outlives this

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -102,6 +103,7 @@ class Keyboard::Implementation {
       throw RunError("the keyboard cannot make an event");
     }
     saved = original_;
+    [[maybe_unused]] static const int at_exit = std::atexit(restore_terminal);
     saved_terminal.store(input);
     watch_signals();
     termios single = original_;

@@ -12,9 +12,9 @@ void restore_terminal() noexcept;
 
 /// The console's keys in the terminal: single keys, read on a thread of its own, asked of the same
 /// SessionControl. While a pass runs whose study has live figures, a line says them once a second.
-/// The terminal is put back at the end, and on fatal signals that nobody else handles. Ctrl-C still
-/// interrupts. Ctrl-Z does nothing while it lives: a program that is suspended would leave its last
-/// force on. Ctrl-S likewise.
+/// The terminal is put back at the end, on fatal signals that nobody else handles, and when a
+/// library calls exit(). Ctrl-C still interrupts. Ctrl-Z does nothing while it lives: a program
+/// that is suspended would leave its last force on. Ctrl-S likewise.
 class Keyboard {
  public:
   /// Quiet where `input` is no terminal or the program runs in the background. At most one at a

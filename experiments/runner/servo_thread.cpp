@@ -90,7 +90,12 @@ SessionServo::SessionServo(realtime::ServoLoop& loop, const protocols::SessionTa
 }
 
 void SessionServo::end() {
-  thread.end();
+  try {
+    thread.end();
+  } catch (const DeviceHangs&) {
+    watched.reset();  // the end of the program must not call a library that hangs
+    throw;
+  }
   for (const protocols::DeviceSet::Arm& arm : arms_) {
     arm.device->write(Eigen::Vector3d::Zero());
   }

@@ -245,6 +245,7 @@ void Session::hear_inputs() {
     notices_.note(news.notice);
   }
   notices_.note(channels_.take_news());
+  notices_.note(screen_ ? screen_->trouble() : "");
   for (const SpokenText& spoken : speaker_ ? speaker_->take_spoken() : std::vector<SpokenText>{}) {
     record_.event_at(spoken.begun_ns, "spoken", spoken.text);
   }

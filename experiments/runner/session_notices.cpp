@@ -114,7 +114,6 @@ void SessionNotices::note_troubles(const record::LiveFigures* live, const Screen
   }
   if (screen != nullptr) {
     note(screen->summary().notice);
-    note(screen->trouble());
   }
 }
 

@@ -194,8 +194,13 @@ void Screen::Impl::run() {
       opened.set_exception(std::current_exception());
       return;
     }
-    const std::lock_guard lock(mutex);
-    trouble = fmt::format("the screen has stopped: {}", sentence_of(error));
+    {
+      const std::lock_guard lock(mutex);
+      trouble = fmt::format("the screen has stopped: {}", sentence_of(error));
+    }
+    if (callbacks.closed) {
+      callbacks.closed();
+    }
   }
 }
 

@@ -47,7 +47,8 @@ struct Flash {
 struct ScreenCallbacks {
   std::function<void(const render::KeyPress&)> key;
   std::function<void(const ScreenPointer&)> pointer;  // when it or the view under it changed
-  std::function<void()> closed;                       // the window's close button, once
+  /// The window's close button, once; and the screen has stopped drawing.
+  std::function<void()> closed;
   /// State of a game controller in the place of the mouse; empty: there is none.
   std::function<device::GamepadState()> pad;
   /// Words over the next picture, at its lower edge; empty: none.

@@ -17,6 +17,7 @@
 #include "tests/support/sanitizer.h"
 #include "tests/support/stand_in.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"
 
 namespace haptrial {
@@ -39,6 +40,10 @@ class LiveStopTest : public testing::Test {
     return test::brisk_text({{"conditions", "conditions = [\"haptic\"]"},
                              {"repetitions", "repetitions = 1"},
                              {"break_after", "break_after = 0"},
+                             {"full_screen", "full_screen = false"},
+                             {"width", "width = 600"},
+                             {"height", "height = 440"},
+                             {"photodiode", "photodiode = \"off\""},
                              {"settle_distance", "settle_distance = 0.02"},
                              {"speed", "speed = 0.002"},
                              {"trajectory", "trajectory = { stiffness = 900.0, damping = 20.0 }"},
@@ -226,6 +231,23 @@ TEST_F(LiveStopTest, AServoThreadThatCrashesTakesItsForceAlong) {
   }
   LiveCommand session(run(""), environment(Failure::kCrash));
   EXPECT_EQ(session.wait().status, 128 + SIGSEGV);
+  expect_cut();
+}
+
+TEST_F(LiveStopTest, ADisplayThatEndsLeavesNoForce) {
+  test::VirtualDisplay display(640, 480);
+  LiveCommand session(run("--window"), environment());
+  ASSERT_TRUE(session.reaches([&] {
+    display.try_key("haptrial", test::VirtualDisplay::kEnter);
+    const auto all = forces();
+    return !all.empty() && all.back().force > kPulls;
+  })) << session.errors();
+  display.end();
+  const CommandResult ended = session.wait();
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.output, HasSubstr("the display is gone"));
+  EXPECT_THAT(ended.errors, HasSubstr("; continue with --resume"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/S01.h5.partial"));
   expect_cut();
 }
 

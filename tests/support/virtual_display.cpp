@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 extern char** environ;
 
@@ -170,8 +171,14 @@ VirtualDisplay::VirtualDisplay(int width, int height) : width_(width), height_(h
 
 VirtualDisplay::~VirtualDisplay() {
   unsetenv("DISPLAY");
-  kill(server_, SIGTERM);
-  waitpid(server_, nullptr, 0);
+  end();
+}
+
+void VirtualDisplay::end() {
+  if (server_ > 0) {
+    kill(server_, SIGTERM);
+    waitpid(std::exchange(server_, -1), nullptr, 0);
+  }
 }
 
 std::vector<std::uint8_t> VirtualDisplay::screenshot() const {

@@ -21,6 +21,8 @@ class VirtualDisplay {
   VirtualDisplay(const VirtualDisplay&) = delete;
   VirtualDisplay& operator=(const VirtualDisplay&) = delete;
 
+  /// Ends the server, as a logout does.
+  void end();
   /// Picture of the monitor from the server's own memory, not by OpenGL.
   std::vector<std::uint8_t> screenshot() const;  // (height x width x 3), rows from the top
   int width() const { return width_; }

@@ -2,6 +2,7 @@
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,12 +21,37 @@ namespace haptrial::render {
 namespace {
 
 std::atomic<bool> open_window{false};
+std::atomic<bool> display_lost{false};
 
 void* glfw_address(const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); }
 
 std::string last_error() {
   const char* text = nullptr;
   return glfwGetError(&text) != GLFW_NO_ERROR && text != nullptr ? text : "no reason given";
+}
+
+template <class Function>
+Function loaded(const char* name) {
+  return reinterpret_cast<Function>(::dlsym(RTLD_DEFAULT, name));
+}
+
+/// Xlib calls exit() when its server is gone. Here the loss is noted instead, and what is drawn
+/// goes nowhere. The functions are looked up, since GLFW for Wayland comes without Xlib.
+void outlive_display() {
+  using Lost = int (*)(void* display);
+  using Exit = void (*)(void* display, void* with);
+  const auto display = loaded<void* (*)()>("glfwGetX11Display");
+  const auto on_loss = loaded<Lost (*)(Lost)>("XSetIOErrorHandler");
+  const auto on_exit = loaded<void (*)(void*, Exit, void*)>("XSetIOErrorExitHandler");
+  display_lost = false;
+  if (display != nullptr && on_loss != nullptr && on_exit != nullptr) {
+    on_loss([](void*) {
+      display_lost = true;
+      return 0;
+    });
+    on_exit(
+        display(), [](void*, void*) {}, nullptr);
+  }
 }
 
 /// GLFW is started for one window and ended with it.
@@ -41,6 +67,7 @@ class Library {
       throw RunError(fmt::format(
           "no window can be opened ({}); set DISPLAY to the name of a display", reason));
     }
+    outlive_display();
   }
   ~Library() {
     glfwTerminate();
@@ -238,7 +265,11 @@ double Window::refresh_rate() const noexcept { return impl_->refresh_rate; }
 void Window::poll() {
   impl_->pressed = 0;
   glfwPollEvents();
+  if (display_lost) {
+    throw RunError("the display is gone: its server ended, or the window was killed");
+  }
 }
+
 void Window::swap() {
   glfwSwapBuffers(impl_->window.get());
   impl_->gl.finish();  // else the driver may queue pictures, and the time would not be that of one

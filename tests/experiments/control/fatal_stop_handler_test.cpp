@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <cstdlib>
+
 namespace haptrial::experiments {
 namespace {
 
@@ -44,6 +47,31 @@ TEST(FatalStopHandlerTest, AServoThreadThatDiesDoesNotWaitForItself) {
   take_force_away();
   EXPECT_EQ(servo.written, 1);
   EXPECT_EQ(servo.looks_left, -1);
+}
+
+/// A servo thread that hangs, on a device that says when it is given zero.
+struct HeardServo final : FatalStopHandler {
+  void ask() noexcept override {}
+  bool done() const noexcept override { return false; }
+  bool on_servo_thread() const noexcept override { return false; }
+  void write_zero() noexcept override { std::fputs("zero", stderr); }
+  const WatchedStop watched{*this};
+};
+
+TEST(FatalStopHandlerDeathTest, ALibraryThatEndsTheProgramTakesTheForceAway) {
+  EXPECT_EXIT(
+      {
+        HeardServo servo;
+        std::exit(3);
+      },
+      testing::ExitedWithCode(3), "^zero$");
+  EXPECT_EXIT(
+      {
+        { HeardServo servo; }
+        std::exit(3);
+      },
+      testing::ExitedWithCode(3), "^$")
+      << "its session had ended";
 }
 
 TEST(FatalStopHandlerTest, WithoutASessionThereIsNothingToDo) { take_force_away(); }

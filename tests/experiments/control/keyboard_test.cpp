@@ -12,6 +12,7 @@
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -106,7 +107,7 @@ void print(const std::string& text) {
 }
 
 /// Prints each message that the session would get as "<pause>", and follows start and pause.
-int session_with_keyboard(bool dies) {
+int session_with_keyboard(bool exits) {
   SessionControl control;
   SessionStatus status;
   status.state = "instructions";
@@ -126,9 +127,10 @@ int session_with_keyboard(bool dies) {
         }
         control.publish(status);
         print("<" + name + ">");
-        if (name == "abort" && !dies) {
-          goes_on = false;
+        if (name == "abort" && exits) {
+          std::exit(5);
         }
+        goes_on = goes_on && name != "abort";
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
@@ -138,6 +140,7 @@ int session_with_keyboard(bool dies) {
 }
 
 int session() { return session_with_keyboard(false); }
+int session_that_exits() { return session_with_keyboard(true); }
 
 class KeyboardTest : public ::testing::Test {
  protected:
@@ -231,6 +234,14 @@ TEST_F(KeyboardTest, TheTerminalIsPutBackAtTheEnd) {
   terminal_.press("ay");
   ASSERT_TRUE(terminal_.shows("<left>"));
   EXPECT_EQ(terminal_.local_modes(), terminal_.first_modes());
+}
+
+TEST_F(KeyboardTest, TheTerminalIsPutBackWhenALibraryEndsTheProgram) {
+  Terminal terminal(session_that_exits);
+  ASSERT_TRUE(terminal.shows("<active>"));
+  terminal.press("ay");
+  EXPECT_EQ(WEXITSTATUS(terminal.wait_for_end()), 5);
+  EXPECT_EQ(terminal.local_modes(), terminal.first_modes());
 }
 
 TEST_F(KeyboardTest, TheTerminalIsPutBackByEverySignalThatEnds) {

@@ -450,5 +450,15 @@ TEST_F(ScreenTest, AKeyThatIsTappedBetweenTwoPicturesIsHeldForOne) {
   }
 }
 
+TEST_F(ScreenTest, ADisplayThatEndsIsTroubleAndSaysSoAtOnce) {
+  std::atomic<int> closed{0};
+  ScreenCallbacks callbacks;
+  callbacks.closed = [&] { ++closed; };
+  const Screen screen(options_, style(), callbacks);
+  display_->end();
+  test::wait_until([&] { return closed == 1; });
+  EXPECT_THAT(screen.trouble(), HasSubstr("the screen has stopped: the display is gone"));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments

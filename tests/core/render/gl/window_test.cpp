@@ -13,6 +13,7 @@
 #include "core/render/flat/text_screen.h"
 #include "core/render/flat/trial_display.h"
 #include "tests/core/render/flat/pixels.h"
+#include "tests/support/message_of.h"
 #include "tests/support/virtual_display.h"
 #include "tests/support/wait.h"
 
@@ -236,6 +237,18 @@ TEST(WindowWithoutDisplayTest, SaysSoInASentence) {
     EXPECT_THAT(error.what(), HasSubstr("no window can be opened"));
     EXPECT_THAT(error.what(), HasSubstr("DISPLAY"));
   }
+}
+
+TEST_F(WindowTest, ADisplayThatEndsIsAnErrorAndNotTheEndOfTheProgram) {
+  Window window(small());
+  display_->end();
+  EXPECT_THAT(test::message_of<RunError>([&] {
+                for (;;) {
+                  window.swap();
+                  window.poll();
+                }
+              }),
+              HasSubstr("the display is gone"));
 }
 
 }  // namespace
