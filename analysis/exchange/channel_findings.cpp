@@ -28,6 +28,7 @@ FindingRow row_of(const record::SessionInfo& info, const ChannelQuality& c) {
           figure("largest_uncertainty", "at most", c.largest_uncertainty, "s", c, 1),
           {.name = "missing", .title = "Missing", .value = c.missing},
           {.name = "losses", .title = "Times lost", .value = c.losses},
+          {.name = "faults", .title = "Faults that it stated", .value = c.faults},
           {.name = "clock_steps", .title = "Steps of its clock", .value = c.clock_steps}};
 }
 

@@ -116,6 +116,7 @@ std::vector<ChannelQuality> channel_quality(const record::SessionReader& reader)
     const auto found = std::ranges::find(all, row.channel, &ChannelQuality::name);
     if (found != all.end()) {
       found->losses += row.what == channel::Incident::kLost ? 1 : 0;
+      found->faults += row.what == channel::Incident::kStatus && row.amount != 0.0 ? 1 : 0;
       found->clock_steps += row.what == channel::Incident::kClockStep ? 1 : 0;
       found->messages += row.what == channel::Incident::kMessage ? 1 : 0;
     }

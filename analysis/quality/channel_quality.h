@@ -18,6 +18,7 @@ struct ChannelQuality {
   std::uint64_t samples{0};
   std::uint64_t missing{0};         // that the instrument counted and that never came
   std::uint64_t losses{0};          // times that no data came any more
+  std::uint64_t faults{0};          // that the instrument stated
   std::uint64_t clock_steps{0};     // of the instrument's clock
   std::uint64_t messages{0};        // texts that the instrument gave
   double first{0.0};                // time of the first sample, since the session's first tick [s]

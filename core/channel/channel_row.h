@@ -54,7 +54,7 @@ enum class Incident : std::uint8_t {
   kRepeated,   // amount: samples that came again or too late, and were left out
   kMalformed,  // amount: bytes that made no sample
   kClockStep,  // amount: seconds by which the instrument's clock jumped ahead of the session's
-  kStatus,     // amount: a status of the instrument; the text says what it means
+  kStatus,     // amount: 0, or that of a fault of the instrument; the text says what it means
   kDropped,    // amount: samples for which the program had no room
   kMessage,  // the text is what the instrument said; amount: the time is within this of the truth,
              // 0 for the time at which it came [s]

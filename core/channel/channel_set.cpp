@@ -135,6 +135,8 @@ void ChannelSet::collect(std::int64_t now_ns, const std::function<void(const rec
         news_.push_back(fmt::format("channel {} is lost: {}", row.channel, row.text));
       } else if (row.what == Incident::kClockStep && !row.text.empty()) {
         news_.push_back(fmt::format("the clock of channel {}: {}", row.channel, row.text));
+      } else if (row.what == Incident::kStatus && row.amount != 0.0) {
+        news_.push_back(fmt::format("channel {}: {}", row.channel, row.text));
       } else if (row.what == Incident::kBack) {
         news_.push_back(fmt::format("channel {} is back after {:.1f} s", row.channel, row.amount));
       }

@@ -48,7 +48,7 @@ class ChannelSet {
   void begin();
   /// Gives the rows that have come to `put`. @param now_ns  time of the session. Session's thread.
   void collect(std::int64_t now_ns, const std::function<void(const record::Rows&)>& put);
-  /// Losses and returns since the last call, in sentences. Session's thread.
+  /// Losses, returns and faults since the last call, in sentences. Session's thread.
   std::vector<std::string> take_news();
 
   /// Takes the newest values. @param time_ns  of the tick, since the session's first. Servo thread:

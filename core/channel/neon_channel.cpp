@@ -26,6 +26,7 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr milliseconds kAnswerWithin{1500};  // of the phone
+constexpr milliseconds kShownWithin{3000};   // a recording, in the phone's answers
 constexpr double kMissedAnswers = 4.0;       // until the phone counts as lost
 constexpr double kBytesPerGigabyte = 1e9;
 constexpr double kNsPerSecond = 1e9;
@@ -172,6 +173,7 @@ class NeonSource final : public ChannelSource {
     try {
       const PhoneAnswer answer(json::parse(status->body));
       take(into, answer, 1e-9 * static_cast<double>(into.now() - asked));
+      watch_recording(answer.numbers.recording > 0.0);
     } catch (const json::exception&) {
       into.note(Incident::kMalformed, static_cast<double>(status->body.size()),
                 "the answer of the phone is no state of a Neon");
@@ -196,6 +198,18 @@ class NeonSource final : public ChannelSource {
                                  failure_of(started)));
     }
     recording_ = true;
+    ends_from_ = steady_clock::now() + kShownWithin;
+  }
+
+  /// The channel is lost with the recording that it began, and begins another one when it is opened
+  /// anew.
+  void watch_recording(bool runs) {
+    if (runs) {
+      ends_from_ = {};
+    } else if (recording_ && steady_clock::now() > ends_from_) {
+      recording_ = false;
+      throw RunError("the recording on the phone has ended");
+    }
   }
 
   /// Told when it begins, and when it changes.
@@ -226,8 +240,9 @@ class NeonSource final : public ChannelSource {
   NeonOptions options_;
   httplib::Client client_;
   steady_clock::time_point next_;
-  bool recording_{false};  // that we began
-  std::string failure_;    // empty: the phone answers
+  bool recording_{false};                 // that we began
+  steady_clock::time_point ends_from_{};  // when an answer without a recording says that it ended
+  std::string failure_;                   // empty: the phone answers
   std::map<std::string, PartState> parts_;
 };
 

@@ -21,6 +21,7 @@ class ScriptedInstrument {
     double device_time{std::numeric_limits<double>::quiet_NaN()};
     std::uint64_t lost{0};
     std::string failure{};  // the instrument is lost for this reason
+    std::string fault{};    // a status says so, in the place of a sample
   };
   void give(Step step) {
     const std::lock_guard lock(mutex_);
@@ -56,6 +57,10 @@ class ScriptedInstrument {
     }
     if (!step.failure.empty()) {
       throw RunError(step.failure);
+    }
+    if (!step.fault.empty()) {
+      into.note(channel::Incident::kStatus, 1.0, step.fault);
+      return;
     }
     into.take({step.values, step.device_time, 0.0, step.lost});
   }

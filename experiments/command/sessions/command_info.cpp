@@ -66,9 +66,12 @@ void print_channels(const record::SessionReader& reader) {
                                      1e3 * c.uncertainty);
     const std::string texts =
         c.messages == 0 ? "" : fmt::format("{}, ", counted(c.messages, "message", "messages"));
-    fmt::print("channel     {}: {}{}{}, {} missing, {}, {} of its clock\n", c.name, texts,
+    const std::string faults =
+        c.faults == 0 ? "" : fmt::format(", {}", counted(c.faults, "fault", "faults"));
+    fmt::print("channel     {}: {}{}{}, {} missing, {}{}, {} of its clock\n", c.name, texts,
                counted(c.samples, "sample", "samples"), times, c.missing,
-               counted(c.losses, "loss", "losses"), counted(c.clock_steps, "step", "steps"));
+               counted(c.losses, "loss", "losses"), faults,
+               counted(c.clock_steps, "step", "steps"));
   }
 }
 

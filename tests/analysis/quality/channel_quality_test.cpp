@@ -33,7 +33,9 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
       {7'010'000'000, "grip", Incident::kBack, 3.0, ""},
       {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(256, 'w')},
       {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(44, 'w')},
-      {7'500'000'000, "grip", Incident::kMessage, 0.0, "warm"}};
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, "warm"},
+      {7'600'000'000, "grip", Incident::kStatus, 3.0, "hot"},
+      {7'700'000'000, "grip", Incident::kStatus, 0.0, "healthy"}};
   record::SessionInfo info;
   info.subject = "P1";
   record::SessionWriter writer(folder / "a.h5", info,
@@ -50,6 +52,7 @@ TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
   EXPECT_NEAR(all[0].silence, 4.01 + 0.01, 1e-9);
   EXPECT_EQ(all[0].losses, 3u);
   EXPECT_EQ(all[0].messages, 2u);
+  EXPECT_EQ(all[0].faults, 1u);
   EXPECT_EQ(channel_incidents(reader)[6].text, std::string(300, 'w'));
 }
 

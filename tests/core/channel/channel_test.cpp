@@ -161,6 +161,20 @@ TEST(ChannelTest, ALostInstrumentIsOpenedAnewAndAnAlarmWhereItIsNeeded) {
               ElementsAre(HasSubstr("the plug was pulled"), HasSubstr("grip is back after 2.0 s")));
 }
 
+TEST(ChannelTest, AFaultThatAnInstrumentStatesIsNews) {
+  const auto instrument = play();
+  ChannelSet set(read(kGrip), {}, true);
+  EXPECT_THAT(set.start([] { return std::int64_t{1}; }, {}), IsEmpty());
+  set.begin();
+  instrument->give({.fault = "the battery is low"});
+  Kept kept;
+  wait_until([&] {
+    kept.take_from(set);
+    return kept.has(Incident::kStatus);
+  });
+  EXPECT_THAT(set.take_news(), ElementsAre("channel grip: the battery is low"));
+}
+
 TEST(ChannelTest, AnOpenInstrumentIsLostOnlyIfItsFirstSampleDoesNotComeInTime) {
   const auto instrument = play();
   ChannelSet set(read(kGrip + "required = true\npatience = 0.1\n"), {}, true);

@@ -133,6 +133,18 @@ TEST(NeonChannelTest, ARecordingBeginsAndEndsWithTheChannel) {
               HasSubstr("begins no recording: HTTP 500: \"Already recording\""));
 }
 
+TEST(NeonChannelTest, ARecordingThatEndsOnThePhoneIsALossAndBeginsAnew) {
+  test::StandInNeon phone;
+  test::ChannelRun run(neon_at(phone.port(), "record = true\n"));
+  run.rows(1);
+  phone.change([](auto& state) { state.recording = false; });
+  EXPECT_THAT(run.incidents(Incident::kLost, 1)[0].text,
+              HasSubstr("the recording on the phone has ended"));
+  run.incidents(Incident::kBack, 1);
+  EXPECT_THAT(phone.posts(), ElementsAre("recording:start", "recording:start"));
+  EXPECT_EQ(run.rows(run.channel().log().pushed() + 1).back().values[2], 1.0);
+}
+
 TEST(NeonChannelTest, WithoutAPhoneOrWithAMistakeThereIsASentence) {
   test::ChannelRun run(neon_at(test::free_port()));
   EXPECT_THAT(run.channel().wait_until_open(), HasSubstr("gives no state of a Neon: "));
