@@ -69,12 +69,13 @@ void SessionController::heed(Request request, RequestSource by) {
       actions_.break_off();
       break;
     case Request::kEmergencyStop:  // the force is zero already
-      if (!std::exchange(requests_.stopped, true)) {
+      requests_.stopped = true;
+      if (!std::exchange(stop_recorded_, true)) {
         actions_.event("emergency_stop", who);
       }
       break;
     case Request::kClear:
-      requests_.stopped = false;
+      requests_.stopped = stop_recorded_ = false;
       requests_.pause = true;  // goes on when the experimenter says so
       status_.fault.clear();
       actions_.clear_fault();
