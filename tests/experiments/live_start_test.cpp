@@ -89,6 +89,24 @@ TEST_F(LiveStartTest, TheChecklistSaysWhoComesAndWhatIsMissing) {
   EXPECT_EQ(start("--check --subject 'P 5'").status, 2) << "no identifier";
 }
 
+TEST_F(LiveStartTest, AnInterruptDoesNotWaitForAnAnswer) {
+  if (!LiveCommand::has_terminals()) {
+    GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  }
+  write_study();
+  LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
+                          (folder_ / "out").string() + "' --subject P01 --pilot",
+                      "", LiveCommand::Where::kTerminal);
+  ASSERT_TRUE(session.reaches([&] {
+    return session.output().find("Is it a pilot?") != std::string::npos;
+  })) << session.output();
+  session.press("\x03");
+  const CommandResult ended = session.wait();
+  EXPECT_EQ(ended.status, 1);
+  EXPECT_THAT(ended.output, HasSubstr("interrupted; nothing was recorded"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/P01.h5.partial"));
+}
+
 TEST_F(LiveStartTest, AfterTheQuestionItRunsTheSessionAndBacksItUp) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";

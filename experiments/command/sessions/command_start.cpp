@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
@@ -16,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/sound/card_player.h"
+#include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/emergency_card.h"
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/command/sessions/run_command.h"
@@ -73,15 +73,6 @@ void print_checks(const SessionChecks& found) {
   std::fflush(stdout);
 }
 
-/// A question to the experimenter. @returns whether the answer is y
-bool asks(const std::string& question) {
-  fmt::print("{} y: yes, any other key: no ", question);
-  std::fflush(stdout);
-  std::string answer;
-  std::getline(std::cin, answer);
-  return answer == "y" || answer == "Y";
-}
-
 /// A quiet tone of a second on the sound card. @throws RunError if there is none
 void play_tone() {
   constexpr double kPitch = 440.0;  // [Hz]
@@ -102,7 +93,7 @@ MachineCheck asked_sound() {
   } catch (const std::exception& error) {
     return {"sound heard", State::kLimited, sentence_of(error)};
   }
-  return asks("A tone was played. Was it heard where the participant sits?")
+  return confirms("A tone was played. Was it heard where the participant sits?")
              ? MachineCheck{"sound heard", State::kReady, "the experimenter heard the tone"}
              : MachineCheck{"sound heard", State::kLimited,
                             "nobody heard the tone; look at plugs, volume and the chosen card"};
@@ -120,7 +111,7 @@ double stated_distance(const protocols::Definition& definition) {
 
 MachineCheck asked_distance(double distance) {
   const std::string where = fmt::format("{:.2f} m from the screen", distance);
-  return asks(fmt::format("Will the participant's eyes be {}?", where))
+  return confirms(fmt::format("Will the participant's eyes be {}?", where))
              ? MachineCheck{"distance", State::kReady, where}
              : MachineCheck{"distance", State::kLimited,
                             "move chair or screen until the eyes are " + where};
@@ -178,7 +169,7 @@ int start(const StartOptions& asked) {
     return found.ready() ? 0 : 1;
   }
   ask_person(experiment);
-  if (!asks(fmt::format("Begin the session of {}?", found.subject))) {
+  if (!confirms(fmt::format("Begin the session of {}?", found.subject))) {
     fmt::print("nothing was recorded\n");
     return 1;
   }

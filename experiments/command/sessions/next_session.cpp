@@ -7,12 +7,12 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 #include <string>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
+#include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/groups.h"
@@ -108,11 +108,7 @@ void confirm_pilot(const RunOptions& options, const Experiment& experiment) {
   if (::isatty(STDIN_FILENO) == 0) {
     return;  // nobody can be asked
   }
-  fmt::print("Is it a pilot? y: yes, any other key: no ");
-  std::fflush(stdout);
-  std::string answer;
-  std::getline(std::cin, answer);
-  if (answer != "y" && answer != "Y") {
+  if (!confirms("Is it a pilot?")) {
     throw InputError(
         "nothing was recorded: leave out --pilot for a session of the study, or take "
         "another --subject for a pilot, such as T01");
