@@ -62,7 +62,7 @@ class SessionController {
   LiveStatus live_;
   TickRate rate_;
   PendingRequests requests_;
-  bool stop_recorded_{false};  // somebody's, since the last clear; a fault stops, too
+  bool stop_recorded_{false};  // a person's stop, since the last clear; a fault stops, too
   std::vector<SessionControl::Message> answers_;
   SessionStatus status_;
   std::chrono::steady_clock::time_point published_{};
