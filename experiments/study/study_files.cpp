@@ -280,20 +280,6 @@ int planned_participants(const std::string& definition) {
   }
 }
 
-/// Facts of the file whose definition plans most participants, the first of several: a study may
-/// take further ones, whose groups the definitions before do not know.
-record::SessionInfo largest_plan(const std::vector<fs::path>& files) {
-  record::SessionInfo largest = record::SessionReader(files.front()).info();
-  for (const fs::path& file : files) {
-    record::SessionInfo info = record::SessionReader(file).info();
-    if (info.definition != largest.definition &&
-        planned_participants(info.definition) > planned_participants(largest.definition)) {
-      largest = std::move(info);
-    }
-  }
-  return largest;
-}
-
 }  // namespace
 
 std::vector<std::size_t> files_that_stay(const std::vector<SessionCopy>& files) {
@@ -366,6 +352,18 @@ std::vector<fs::path> files_of_one_study(const fs::path& folder,
   const std::vector<fs::path> files = files_of(folder, Pilots::kLeftOut);
   static_cast<void>(definition_remarks(protocol, files));
   return files;
+}
+
+record::SessionInfo largest_plan(const std::vector<fs::path>& files) {
+  record::SessionInfo largest = record::SessionReader(files.front()).info();
+  for (const fs::path& file : files) {
+    record::SessionInfo info = record::SessionReader(file).info();
+    if (info.definition != largest.definition &&
+        planned_participants(info.definition) > planned_participants(largest.definition)) {
+      largest = std::move(info);
+    }
+  }
+  return largest;
 }
 
 StudyFiles study_files(const fs::path& folder, Pilots pilots, const ProtocolOf& protocol_of) {

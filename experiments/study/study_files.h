@@ -73,6 +73,11 @@ using ProtocolOf = std::function<const protocols::Protocol&(const record::Sessio
 StudyFiles study_files(const std::filesystem::path& folder, Pilots pilots,
                        const ProtocolOf& protocol_of);
 
+/// Facts of the file whose definition plans most participants, the first of several: a study may
+/// take further ones, whose groups the definitions before do not know.
+/// @param files  at least one
+record::SessionInfo largest_plan(const std::vector<std::filesystem::path>& files);
+
 /// The participants who have had every session of their group, in the order in which they began
 /// the last of them: those of whom a study that may end early has all data. Those of an import,
 /// which begin together, come by their numbers, which are places in the tables.

@@ -7,6 +7,7 @@
 #include "core/record/read/imported.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/experiment.h"
+#include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -61,11 +62,10 @@ analysis::FindingList study_methods(const std::vector<fs::path>& analysed) {
     return list;
   }
   const std::vector<MethodsSession> sessions = sessions_of(analysed);
-  const auto first = std::ranges::find_if(sessions, &MethodsSession::analysed);
-  if (first == sessions.end()) {
+  if (std::ranges::none_of(sessions, &MethodsSession::analysed)) {
     return list;
   }
-  const record::SessionInfo& info = first->facts.info;
+  const record::SessionInfo info = largest_plan(analysed);
   const Experiment experiment = parse_experiment(info.definition, info.definition_name);
   analysis::Document document;
   add_participants(sessions, *experiment.definition, document);
