@@ -62,7 +62,7 @@ class Channel final : private ChannelInbox {
   using Log = realtime::BlockLog<ChannelRow>;
   /// Samples that have come; the session's thread is their consumer.
   Log& log() noexcept { return log_; }
-  /// The same samples for the servo thread, which is their consumer; those that it leaves lie here
+  /// Samples for the servo thread, which is their consumer here; those that it leaves lie here
   /// until there is no more room.
   Log& unseen() noexcept { return unseen_; }
   /// Incidents since the last call. Any thread but the servo thread.

@@ -36,7 +36,8 @@ SampleTime SampleClock::time_of(std::int64_t received_ns, double waited) const {
           std::hypot(options_.latency_uncertainty, 0.5 * waited), 0.0};
 }
 
-/// What is no delay. The first point alone may be late by any.
+/// The least step of the clock, above any delay of a sample: a first point alone may be late by
+/// any.
 double SampleClock::least_step() const {
   return lowest_.size() == 1 ? kFirstStep : std::max({kLeastStep, 4.0 * spread_, least_delay_});
 }

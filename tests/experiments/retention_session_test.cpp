@@ -251,7 +251,7 @@ TEST_F(RetentionSessionTest, AMissingSessionIsNamed) {
 TEST_F(RetentionSessionTest, ANumberOfAnotherGroupIsRefused) {
   const std::string text = refused("run study.toml --subject P01 --participant 3 --session 2");
   EXPECT_THAT(text, HasSubstr("--participant is 3, a number of seen-and-felt, but P01 is of seen"));
-  EXPECT_THAT(text, HasSubstr("allowed: a number of seen"));
+  EXPECT_THAT(text, HasSubstr("allowed: --participant with a number of seen"));
 }
 
 TEST_F(RetentionSessionTest, GroupsOfOneHaveAReportWithoutAFigure) {

@@ -117,7 +117,7 @@ std::string sampled_words(const TrialsPlan& plan) {
       plan.resamples, kUnusualScatter);
 }
 
-/// The same without bootstrap samples.
+/// Origin of the intervals if no bootstrap samples were drawn.
 std::string unsampled_words() {
   return fmt::format(
       "Functions of listed levels are fitted by maximum likelihood, without bootstrap samples. "
