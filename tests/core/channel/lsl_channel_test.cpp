@@ -93,6 +93,12 @@ class LslChannelTest : public testing::Test {
     from->offset = kLayerAhead + time() - from->measured_at + wrong;
     from->uncertainty = uncertainty;
   }
+  /// Measures at a later time of the session, at which the channel looks for a new offset.
+  void measure_at(double session, const std::shared_ptr<test::LslOffer>& from, double wrong = 0.0) {
+    network_->clock = kLayerAhead + session;
+    measure(from, wrong);
+    run_->set_now(session);
+  }
   void send(const std::shared_ptr<test::LslOffer>& from,
             std::vector<test::LslOffer::Sent> samples) {
     {
@@ -165,8 +171,7 @@ TEST_F(LslChannelTest, AnOffsetThatJumpsIsAStepOfTheClock) {
   set_time(1.0);
   send(grip, {{sender_clock(1.0), {1.0, 2.0}, {}}});
   channel.rows(1);
-  set_time(2.5);
-  measure(grip, -0.25);  // its clock goes 0.25 s further ahead
+  measure_at(2.5, grip, -0.25);  // its clock goes 0.25 s further ahead
   test::wait_until([&] { return channel.of_kind(Incident::kClockStep).size() == 1; });
   EXPECT_NEAR(channel.of_kind(Incident::kClockStep)[0].amount, 0.25, 1e-3);
   send(grip, {{sender_clock(2.5) + 0.25, {1.0, 2.0}, {}}});
@@ -240,8 +245,7 @@ TEST_F(LslChannelTest, TextsAreMessagesAtTheirOwnTime) {
   EXPECT_EQ(said[1].text, std::string(256, 'a'));
   EXPECT_EQ(said[2].text, std::string(44, 'a') + "??\t?") << "a file holds UTF-8 only";
   EXPECT_EQ(said[2].time_ns, said[1].time_ns);
-  set_time(12.0);
-  measure(markers);
+  measure_at(12.0, markers);
   channel.incidents(Incident::kClockOffset, 2);
   EXPECT_THAT(channel.of_kind(Incident::kLost), SizeIs(0)) << "silence is no loss";
   const auto set_silent = [&](bool silent) {
