@@ -26,7 +26,7 @@ class TickTimes {
     const record::Sample last = last_until(sequence);
     return last.time_ns + length_of(sequence - last.sequence);
   }
-  /// The time that so many ticks take [ns].
+  /// Duration of a number of ticks [ns].
   std::int64_t length_of(std::uint64_t ticks) const {
     return std::llround(1e9 * static_cast<double>(ticks) / reader_.info().rate);
   }

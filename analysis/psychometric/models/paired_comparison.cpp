@@ -39,8 +39,8 @@ void add_known(MatrixXd& information, Eigen::Index i, Eigen::Index k, double kno
 }
 
 /// A step of Fisher's scoring on the score that takes the bias of first order away; the mean of the
-/// worths stays. A pair counts in the step with its leverage besides, as if so many answers more
-/// had been given, without which steps at few answers swing.
+/// worths stays. In the step each pair also counts its leverage as further answers; without them
+/// the steps do not settle if there are few answers.
 VectorXd step_from(const MatrixXd& wins, const VectorXd& worth, PairedModel model) {
   const Eigen::Index n = worth.size();
   const auto for_each_pair = [&](auto&& visit) {

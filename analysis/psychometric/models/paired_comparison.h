@@ -14,10 +14,9 @@ enum class PairedModel : std::uint8_t {
                   // Psychological Review 34, case V)
 };
 
-/// Worths of items from how often each was chosen over each; their mean is 0. The likelihood's bias
-/// of first order is taken away, which few answers would make large: with it, means over
-/// participants would lie too far out, and worths of items that were always or never chosen would
-/// be infinite.
+/// Worths of items from how often each was chosen over each; their mean is 0. The bias of
+/// first order of a likelihood is removed. With few answers it is large: means over participants
+/// would lie too far out, and worths of items that were always or never chosen would be infinite.
 /// @param wins  (items x items) how often the row's item was chosen over the column's, >= 0; 0 on
 ///   the diagonal
 /// @returns (items); undefined for fewer than two items, and if no chain of presented pairs links

@@ -25,9 +25,9 @@ struct BoneSummary {
   double volume{0.0};  // [m3]
   Eigen::AlignedBox3d box;
   /// Area of the outside [m2]: faces between full and empty voxels, each over |x| + |y| + |z| of
-  /// the normal there, as a plane of that normal has so many faces for its area. The normal is the
-  /// direction away from what is full within 1.6 voxels. Within 4 % for balls and blocks of 40
-  /// voxels, however they are turned.
+  /// the normal there, which is the area of faces on a plane of that normal for each unit of its
+  /// own area. The normal is the direction away from what is full within 1.6 voxels. Within 4 % for
+  /// balls and blocks of 40 voxels, however they are turned.
   double surface{0.0};
 };
 
