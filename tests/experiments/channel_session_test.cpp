@@ -233,6 +233,12 @@ class GripOnAPipe {
   std::thread thread_;
 };
 
+/// The number of the line that gave the row.
+long line_of(const GripRow& row) {
+  const double squeeze = row.force > 2.0 ? 3.0 : 1.0;
+  return std::lround(1e6 * (row.force - squeeze));
+}
+
 class LiveChannelTest : public ChannelSessionTest {
  protected:
   void SetUp() override {
@@ -249,7 +255,6 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
   const GripOnAPipe grip((folder_ / "pipe").string());
   const std::string run = "run " + file + " --subject S01 --device virtual --out " + out;
   std::size_t before = 0;
-  std::vector<std::size_t> runs;  // how many rows there were after each
   for (int kill = 0; kill < 3; ++kill) {
     test::LiveCommand live(kill == 0 ? run : run + " --resume");
     live.line_after("recording ");  // a file that is being read cannot be gone on with
@@ -264,7 +269,6 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
     live.signal(SIGKILL);
     live.wait();
     before = grip_of(record::SessionReader(partial)).size();
-    runs.push_back(before);
   }
   EXPECT_EQ(test::run_command("haptrial " + run + " --resume").status, 0);
   const record::SessionReader reader(out + "/S01.h5");
@@ -276,8 +280,9 @@ TEST_F(LiveChannelTest, ASessionThatIsKilledGoesOnWithTheNumbersOfItsChannel) {
     EXPECT_EQ(++seen[rows[i].force], 1) << "no line came twice";
   }
   // A run goes on after the last tick that is in the file, beyond which its killed channel may be.
+  // Between two runs the pipe has no reader, so that lines are missing.
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (std::ranges::find(runs, i) == runs.end()) {
+    if (line_of(rows[i]) == line_of(rows[i - 1]) + 1) {
       EXPECT_GE(rows[i].time, rows[i - 1].time) << i;
     }
   }
