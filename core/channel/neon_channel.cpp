@@ -28,6 +28,7 @@ using std::chrono::steady_clock;
 constexpr milliseconds kAnswerWithin{1500};  // of the phone
 constexpr milliseconds kShownWithin{3000};   // a recording, in the phone's answers
 constexpr double kMissedAnswers = 4.0;       // until the phone counts as lost
+constexpr int kNoAnswer = 1;                 // below any number that HTTP gives
 constexpr double kBytesPerGigabyte = 1e9;
 constexpr double kNsPerSecond = 1e9;
 
@@ -166,7 +167,7 @@ class NeonSource final : public ChannelSource {
     const std::int64_t asked = into.now();
     const httplib::Result status = client_.Get("/api/status");
     if (!status || status->status != 200) {
-      note_failure(into, failure_of(status), status ? status->status : 0);
+      note_failure(into, failure_of(status), status ? status->status : kNoAnswer);
       return;
     }
     failure_.clear();

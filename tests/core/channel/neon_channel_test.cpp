@@ -107,7 +107,9 @@ TEST(NeonChannelTest, AnswersThatAreNoneAreToldAndThePhoneIsFoundAgain) {
   EXPECT_EQ(hot.amount, 503.0);
   EXPECT_EQ(hot.text, "no answer: HTTP 503: \"Too hot\"");
   phone.reset();
-  EXPECT_THAT(run.incidents(Incident::kStatus, 6)[5].text, HasSubstr("no answer: "));
+  const auto gone = run.incidents(Incident::kStatus, 6)[5];
+  EXPECT_THAT(gone.text, HasSubstr("no answer: "));
+  EXPECT_EQ(gone.amount, 1.0) << "a fault, although HTTP has no number for it";
   run.set_now(2.5);
   EXPECT_THAT(run.incidents(Incident::kLost, 1)[0].text, HasSubstr("no data come any more"));
   phone = std::make_unique<test::StandInNeon>(port);
