@@ -17,8 +17,8 @@ def procedure(keys: dict, seed: int = 1) -> Procedure:
         staircase.estimates
 
     kind is any kind that [procedure] of a definition takes, such as staircase, psi or surface.
-    `variable` may be left out. seed: of the order of listed levels. Raises ValueError with a sentence for every key
-    that is wrong, missing or unknown."""
+    `variable` may be left out. seed: of the order of listed levels. Raises ValueError with a
+    sentence for every key that is wrong, missing or unknown."""
     found = _haptrial.procedures(_text(keys), "procedure", False, seed)
     if len(found) != 1:
         raise ValueError(f"procedure: has {len(found)} tracks; allowed: one, or call procedures()")
