@@ -153,7 +153,10 @@ FindingRow row_of(const TrialsResult& result, const FunctionFit& fit) {
   FindingRow row = row_of(result, fit.participant, fit.levels, "");
   add(row, "condition", "condition", fit.condition);
   add(row, "trials", "trials", fit.trials);
-  add(row, "estimates_from", "", fit.adaptive ? "posterior" : "profile likelihood and bootstrap");
+  add(row, "estimates_from", "",
+      fit.adaptive                ? "posterior"
+      : result.plan.resamples > 0 ? "profile likelihood and bootstrap"
+                                  : "profile likelihood");
   add_word(row, "source", "fit", method_of(fit));
   add_readings(row, result, method_of(fit), fit.stated, true, fit.lapse_told);
   add_word(row, "", title_if(bool(fit.stated), kDeviance), deviance_word(fit));

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -16,6 +17,7 @@
 #include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_figures.h"
+#include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_report.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/study/trials_study.h"
@@ -145,6 +147,10 @@ TEST(TrialsTextTest, MethodsStateTheRuleByWhichIntervalsAreWidened) {
       AllOf(HasSubstr("without bootstrap samples"),
             HasSubstr(fmt::format("(p below {} of the deviance by chi-square)", kUnusualScatter)),
             Not(HasSubstr("bias-corrected"))));
+  const FindingRow row = function_findings(result).rows.at(0);
+  const auto from = std::ranges::find(row, "estimates_from", &Finding::name);
+  ASSERT_NE(from, row.end());
+  EXPECT_EQ(*from->value.word(), "profile likelihood");
 }
 
 /// Reaction times, and errors that nobody made, before and after.
