@@ -37,14 +37,25 @@ void check_track_factors(Table& root, const Track& track, const std::set<std::st
   }
 }
 
-/// A file tells tracks apart by name and levels, and has so much room for them.
-void check_track_name(Table& root, const TrialsDefinition& d, const Track& track) {
+/// The longest name of a track with its levels in a block.
+std::string longest_name(const TrialsDefinition& d, const Track& track, const Block& block) {
   std::string longest = track.name;
-  for (const Factor& factor : d.order.factors) {
-    if (std::ranges::find(track.by, factor.name) != track.by.end()) {
-      const std::string& level = *std::ranges::max_element(
-          factor.levels, {}, [](const auto& each) { return each.size(); });
-      longest += ", " + shown_level(level);
+  for (const Factor* factor : d.varied_by(track, block)) {
+    const auto size = [](const std::string& level) { return shown_level(level).size(); };
+    longest += ", " + shown_level(*std::ranges::max_element(factor->levels, {}, size));
+  }
+  return longest;
+}
+
+/// A file tells tracks apart by name and levels, and has so much room for them. A factor to which
+/// a block gives a value is no part of the name there.
+void check_track_name(Table& root, const TrialsDefinition& d, const Track& track) {
+  std::string longest;
+  for (const Block& block : d.order.blocks) {
+    const std::vector<const Track*> asked = d.tracks_in(block);
+    if (std::ranges::find(asked, &track) != asked.end()) {
+      longest = std::max(longest, longest_name(d, track, block),
+                         [](const auto& a, const auto& b) { return a.size() < b.size(); });
     }
   }
   if (longest.size() > record::kTrialWordBytes) {

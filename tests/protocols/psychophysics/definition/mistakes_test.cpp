@@ -88,9 +88,13 @@ tool = ["short needle", "steel needle"]
   const std::string by =
       test::replaced(kSmallStaircase, "range", "by = [\"material\", \"tool\"]\nrange");
   EXPECT_THAT(problems_of_trials(small_trials(by, factors)), IsEmpty());
-  EXPECT_THAT(problems_of_trials(small_trials(
-                  by, test::replaced(factors, "short needle", "short needle with a bevelled tip"))),
+  const std::string longer =
+      test::replaced(factors, "short needle", "short needle with a bevelled tip");
+  EXPECT_THAT(problems_of_trials(small_trials(by, longer)),
               Contains(HasSubstr("short needle with a bevelled tip\", which is over 64 bytes")));
+  const std::string given = "[[blocks]]\nname = \"one\"\ntool = \"steel needle\"\n";
+  EXPECT_THAT(problems_of_trials(small_trials(by, longer + given)), IsEmpty())
+      << "a level that a block gives is no part of the name";
 }
 
 // A block that gives the variable of a procedure its value asks none: nothing else says the level.
