@@ -43,6 +43,7 @@ void check_new_session(Table& root, const protocols::Definition& definition) {
   Table envelope = root.table("envelope");
   device::check_new_envelope(envelope, definition.envelope);
   channel::check_lines(root, definition.channels);
+  definition.check_new_session(root);
   if (!root.is_table("tutoring")) {
     return;
   }

@@ -107,6 +107,8 @@ struct Definition {
   virtual std::vector<std::string> description() const = 0;
   /// Lines on how firmly the loop lets the devices be held, for a check of a device.
   virtual std::vector<std::string> margins() const { return {}; }
+  /// Notes what recorded sessions may have, but no session may begin with.
+  virtual void check_new_session(Table& root) const { static_cast<void>(root); }
   /// Sentences on what is allowed but spoils the data without a word. None where all is well.
   virtual std::vector<std::string> warnings() const { return {}; }
   /// Parts that a session leaves out when its participant is virtual, in sentences.

@@ -39,5 +39,13 @@ TEST(RecordedBoundsTest, ChannelsOnOneLineCanBeReadButNotBegun) {
       HasSubstr("channels.b.path is \"/dev/ttyACM0\", as that of channel a"));
 }
 
+TEST(RecordedBoundsTest, LevelsThatAFileHasNoRoomForCanBeReadButNotBegun) {
+  const std::string shipped =
+      test::read_text(test::shipped_definition().parent_path() / "stiffness_discrimination.toml");
+  EXPECT_THAT(refused_file(shipped + "\n[factors]\ntool = [\"" + std::string(65, 'x') +
+                           "\", \"needle\"]\n"),
+              HasSubstr("allowed: words of at most 64 bytes"));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments::recorded_bounds_test

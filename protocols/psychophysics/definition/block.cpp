@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "core/base/definition/schema.h"
-#include "core/record/rows/trial_rows.h"
 #include "protocols/definition/schedule.h"
 
 namespace haptrial::protocols {
@@ -125,11 +124,6 @@ std::vector<Factor> read_factors(Table& root) {
     }
     factors.push_back({name, {}});
     for (const NumberOrText& level : rows[0]) {
-      if (!level.number && level.text.find('$') == std::string::npos &&
-          level.text.size() > record::kTrialWordBytes) {
-        table.reject(name, fmt::format("a list with \"{}\"", level.text),
-                     fmt::format("words of at most {} bytes", record::kTrialWordBytes));
-      }
       factors.back().levels.push_back(as_formula(level.number, level.text));
     }
   }

@@ -67,6 +67,18 @@ void check_track_name(Table& root, const TrialsDefinition& d, const Track& track
   }
 }
 
+/// A word that varies is recorded whole.
+void check_level_words(Table& root, const Factor& factor) {
+  for (const std::string& level : factor.levels) {
+    const std::string word = shown_level(level);
+    if (word.size() < level.size() && word.size() > record::kTrialWordBytes) {
+      root.table("factors").reject(
+          factor.name, fmt::format("a list with \"{}\"", word),
+          fmt::format("words of at most {} bytes", record::kTrialWordBytes));
+    }
+  }
+}
+
 /// A track may not set what a factor or an interval gives.
 void check_track_variable(Table& root, const TrialsDefinition& d, const std::string& variable,
                           const std::set<std::string>& factors) {
@@ -94,7 +106,6 @@ void check_tracks(Table& root, const TrialsDefinition& d) {
                   fmt::format("has two tracks \"{}\"; give each a name of its own", track.name));
     }
     check_track_factors(root, track, factors);
-    check_track_name(root, d, track);
     for (const std::string& variable : track.variables()) {
       check_track_variable(root, d, variable, factors);
     }
@@ -327,6 +338,15 @@ void check_procedures(Table& root, const TrialsDefinition& d) {
     check_learning(root, d, track);
   }
   check_variables(root, d);
+}
+
+void TrialsDefinition::check_new_session(Table& root) const {
+  for (const Factor& factor : order.factors) {
+    check_level_words(root, factor);
+  }
+  for (const Track& track : tracks) {
+    check_track_name(root, *this, track);
+  }
 }
 
 /// The name of a measure has its value after the trial alone.

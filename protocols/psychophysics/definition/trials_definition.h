@@ -72,6 +72,7 @@ struct TrialsDefinition : Definition {
   bool has_target() const override { return false; }
   bool hears_pointer() const override;
   std::vector<std::string> description() const override;
+  void check_new_session(Table& root) const override;
   std::vector<std::string> warnings() const override;
   double longest(int trials) const override;
   /// Intervals if there are several, stages, and the answers to all questions in their order.

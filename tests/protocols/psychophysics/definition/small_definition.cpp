@@ -49,6 +49,7 @@ void read_small(const std::string& text, TrialsDefinition& definition) {
   Table root = Table::parse(text, "small.toml");
   root.leave("observer");
   read_trials_definition(root, "small.toml", definition);
+  definition.check_new_session(root);
   root.finish();
 }
 
