@@ -230,6 +230,8 @@ PowerQuestion load_question(const fs::path& file) {
         "{}: has no table [power]; give it watch and [[power.vary]] (docs/guide-power.md)",
         file.string()));
   }
+  check_new_power(root);
+  root.check();
   Table power = root.table("power");
   if (!power.has("definition")) {
     return parse_question({{root.source(), file.string()}}, file.parent_path());

@@ -44,6 +44,9 @@ void check_new_session(Table& root, const protocols::Definition& definition) {
   device::check_new_envelope(envelope, definition.envelope);
   channel::check_lines(root, definition.channels);
   definition.check_new_session(root);
+  if (root.is_table("power")) {
+    check_new_power(root);
+  }
   if (!root.is_table("tutoring")) {
     return;
   }

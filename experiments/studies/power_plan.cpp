@@ -8,6 +8,7 @@ namespace haptrial::experiments {
 namespace {
 
 constexpr long kMostReplications = 1'000'000;
+constexpr const char* kRobust = "robust";  // a key of version 0.2, in recordings
 
 void check_vary(Table& table, VariedKey& varied) {
   if (varied.key.empty() || varied.key.front() == '.' || varied.key.back() == '.' ||
@@ -100,7 +101,16 @@ const Schema<PowerPlan>& power_schema() {
 
 PowerPlan read_power_plan(Table& root) {
   Table table = root.table("power");
+  table.pass_over(kRobust);
   return power_schema().read(table);
+}
+
+void check_new_power(Table& root) {
+  Table table = root.table("power");
+  if (table.has(kRobust)) {
+    table.reject(kRobust,
+                 "is a key of version 0.2 alone; vary what may go wrong with [[power.vary]]");
+  }
 }
 
 }  // namespace haptrial::experiments

@@ -40,4 +40,7 @@ struct PowerPlan {
 /// Reads the table [power]. Problems are noted.
 PowerPlan read_power_plan(Table& root);
 
+/// Notes keys of [power] that recordings of version 0.2 may have, and no new question.
+void check_new_power(Table& root);
+
 }  // namespace haptrial::experiments

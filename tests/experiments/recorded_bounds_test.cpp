@@ -47,5 +47,13 @@ TEST(RecordedBoundsTest, LevelsThatAFileHasNoRoomForCanBeReadButNotBegun) {
               HasSubstr("allowed: words of at most 64 bytes"));
 }
 
+TEST(RecordedBoundsTest, APowerPlanOfVersion02CanBeReadButNotAsked) {
+  const std::string said = refused_file(test::brisk_text() +
+                                        "\n[power]\nwatch = \"a\"\nrobust = true\n"
+                                        "[[power.vary]]\nkey = \"design.participants\"\n"
+                                        "values = [4, 8]\n");
+  EXPECT_THAT(said, HasSubstr("power.robust is a key of version 0.2 alone"));
+}
+
 }  // namespace
 }  // namespace haptrial::experiments::recorded_bounds_test
