@@ -15,7 +15,7 @@ constexpr double kSilence = 0.02;  // before it, which is part of what is compar
 constexpr double kLeastFit = 0.25;
 constexpr double kQuiet = 0.05;     // before the sound, which tells the noise [s]
 constexpr double kOut = 5.0;        // times the noise, above which a sample stands out
-constexpr double kByNoise = 2.5;    // times the noise, by which one may be wrong
+constexpr double kByNoise = 4.5;    // times the noise, beyond which none of thousands of samples is
 constexpr double kLeastOut = 1e-3;  // of the sound, where there is no noise
 
 double median_of(std::vector<float> values) {
