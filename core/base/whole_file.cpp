@@ -33,15 +33,18 @@ fs::path target_of(const fs::path& file) {
 
 /// Gives a file the mode, the owner and the group of the one that it replaces. Only the superuser
 /// may give files away, so for anybody else the owner is the writer; the group stays if the writer
-/// is a member of it.
+/// is a member of it. Another group may do no more than everybody may.
 void keep_access(const fs::path& part, const fs::path& replaced) {
   struct stat before {};
-  if (stat(replaced.c_str(), &before) == 0) {
-    if (chown(part.c_str(), before.st_uid, before.st_gid) != 0) {
-      [[maybe_unused]] const int group = chown(part.c_str(), kSameOwner, before.st_gid);
-    }
-    chmod(part.c_str(), before.st_mode & 0777);
+  if (stat(replaced.c_str(), &before) != 0) {
+    return;
   }
+  mode_t mode = before.st_mode & 0777;
+  if (chown(part.c_str(), before.st_uid, before.st_gid) != 0 &&
+      chown(part.c_str(), kSameOwner, before.st_gid) != 0) {
+    mode = (mode & 0707) | (mode & 07) << 3;
+  }
+  chmod(part.c_str(), mode);
 }
 
 /// Opens a file that was not there and tells its name. Nobody else may read what replaces a

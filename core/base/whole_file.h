@@ -9,8 +9,8 @@ namespace haptrial {
 
 /// A file that is written whole or not at all: the bytes go to FILE.partial-N beside it, which
 /// takes its name in finish(). Without that, or when the program is told to stop, nothing is left.
-/// A file that is replaced keeps its mode, and its group and owner as far as the system allows it;
-/// the target of a symbolic link is replaced.
+/// A file that is replaced keeps its owner and group as far as the system allows it, and its mode;
+/// without its group, nobody gains access. The target of a symbolic link is replaced.
 class WholeFile {
  public:
   /// @param overwrite  replace a file that is there
