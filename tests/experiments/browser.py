@@ -33,15 +33,7 @@ class Driver:
 
     def __init__(self, folder, flags=()):
         profile = folder / "profile"
-        self.process = subprocess.Popen(
-            ["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True,
-            env={**os.environ, "HOME": str(folder)})
-        self.base = ""
-        for line in self.process.stdout:
-            if "started successfully on port" in line:
-                port = line.strip().rstrip(".").rsplit(" ", 1)[1]
-                self.base = f"http://127.0.0.1:{port}"
-                break
+        self.base = self.started(folder)
         options = {"args": FLAGS + [f"--user-data-dir={profile}", *flags]}
         logging = {"goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}
         try:
@@ -51,6 +43,19 @@ class Driver:
             self.process.kill()
             raise
         self.base += "/session/" + answer["sessionId"]
+
+    def started(self, folder):
+        # The driver takes a port that is free for one version of the protocol; where it is not free
+        # for the other it ends at once.
+        for _ in range(10):
+            self.process = subprocess.Popen(
+                ["chromedriver", "--port=0"], stdout=subprocess.PIPE, text=True,
+                env={**os.environ, "HOME": str(folder)})
+            for line in self.process.stdout:
+                if "started successfully on port" in line:
+                    return "http://127.0.0.1:" + line.strip().rstrip(".").rsplit(" ", 1)[1]
+            self.process.wait()
+        raise RuntimeError("chromedriver does not start")
 
     def open(self, url):
         self.call("POST", "/url", {"url": url})
