@@ -11,8 +11,6 @@ struct Interval {
   double value{kNone};
   double low{kNone}, high{kNone};
   double df{0.0};  // degrees of freedom behind the interval
-
-  bool is_known() const { return value == value; }
 };
 
 /// value ± t(df) · error.

@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <string_view>
+
+#include "core/base/error.h"
+#include "core/base/file_text.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -94,6 +99,49 @@ std::string inline_svg(const std::string& svg, const std::string& prefix, std::s
   replace_all(result, "<title>Gnuplot</title>", "");
   const auto label = fmt::format("<svg role=\"img\" aria-label=\"{}\"", escape_html(alt));
   return result.replace(0, std::min<std::size_t>(4, result.size()), label);
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kSigns =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += i + k <= bytes.size() ? kSigns[group >> (18 - 6 * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+namespace {
+
+std::uint32_t big_endian(const std::string& bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  }
+  return value;
+}
+
+}  // namespace
+
+std::string svg_of_png(const std::filesystem::path& png) {
+  const std::string bytes = file_text(png);
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t kWidthAt = 16, kHeightAt = 20, kHeader = 24;
+  if (bytes.size() < kHeader || bytes.compare(0, kSignature.size(), kSignature) != 0) {
+    throw InputError(fmt::format("{}: is not a PNG file", png.string()));
+  }
+  const std::uint32_t width = big_endian(bytes, kWidthAt), height = big_endian(bytes, kHeightAt);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
+      "height=\"{1}\"><image width=\"{0}\" height=\"{1}\" "
+      "href=\"data:image/png;base64,{2}\"/></svg>\n",
+      width, height, base64(bytes));
 }
 
 }  // namespace haptrial::analysis

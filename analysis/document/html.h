@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,5 +18,12 @@ std::string html_table(const std::vector<std::string>& heading,
 /// An SVG file as an element within a page: no XML prologue, its ids behind `prefix` so that
 /// several pictures on a page do not share them, and `alt` as its name for those who cannot see it.
 std::string inline_svg(const std::string& svg, const std::string& prefix, std::string_view alt);
+
+/// Bytes as text for data: addresses and for scripts (RFC 4648, with padding).
+std::string base64(std::string_view bytes);
+
+/// An SVG file that shows a PNG file and holds all its bytes.
+/// @throws InputError when the file is absent or no PNG.
+std::string svg_of_png(const std::filesystem::path& png);
 
 }  // namespace haptrial::analysis

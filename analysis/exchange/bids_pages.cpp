@@ -8,11 +8,11 @@
 #include <set>
 #include <utility>
 
-#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/columns.h"
+#include "analysis/exchange/data_set_sessions.h"
 #include "analysis/exchange/pass_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 
 namespace haptrial::exchange::bids {
 namespace {

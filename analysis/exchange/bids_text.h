@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/data_set_options.h"
 #include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/quality/channel_quality.h"

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
 

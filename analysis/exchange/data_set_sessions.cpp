@@ -6,7 +6,6 @@
 #include <map>
 #include <set>
 
-#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/pass_facts.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"
@@ -98,6 +97,16 @@ void write_definitions(const NewFolder& out, std::span<const Session> sessions,
       }
     }
   }
+}
+
+std::string bids_label(std::string_view text) {
+  std::string label;
+  for (const char c : text) {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) {
+      label += c;
+    }
+  }
+  return label;
 }
 
 }  // namespace haptrial::exchange

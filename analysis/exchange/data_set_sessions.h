@@ -3,11 +3,12 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/data_set_options.h"
+#include "analysis/exchange/export_sessions.h"
 
 // Sessions of a data set of BIDS or Psych-DS; for the exports alone.
 namespace haptrial::exchange {
@@ -27,5 +28,8 @@ std::vector<ColumnDoc> fact_columns(std::span<const bids::Session> sessions);
 /// texts, say, were changed. @param folder  of the data set
 void write_definitions(const NewFolder& out, std::span<const bids::Session> sessions,
                        const std::string& folder);
+
+/// The letters and digits of a name, which is all that a label of the data set may have.
+std::string bids_label(std::string_view text);
 
 }  // namespace haptrial::exchange

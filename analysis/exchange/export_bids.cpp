@@ -6,12 +6,11 @@
 #include <map>
 #include <set>
 
-#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_motion.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/bids_text.h"
-#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/data_set_sessions.h"
+#include "analysis/exchange/sample_text.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
 #include "core/base/error.h"

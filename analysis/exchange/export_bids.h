@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <span>
 
-#include "analysis/exchange/data_set_options.h"
 #include "analysis/exchange/export_sessions.h"
 
 namespace haptrial::exchange {

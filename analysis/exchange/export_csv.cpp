@@ -7,19 +7,18 @@
 #include <set>
 #include <variant>
 
-#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/other_devices.h"
-#include "analysis/exchange/pass_spans.h"
+#include "analysis/exchange/pass_facts.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
 #include "analysis/quality/channel_quality.h"
-#include "analysis/quality/quality_columns.h"
+#include "analysis/quality/trial_quality.h"
 #include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
 

@@ -7,13 +7,11 @@
 #include <optional>
 #include <set>
 
-#include "analysis/exchange/bids_label.h"
 #include "analysis/exchange/bids_pages.h"
 #include "analysis/exchange/data_set_sessions.h"
 #include "analysis/exchange/pass_facts.h"
-#include "analysis/exchange/pass_spans.h"
 #include "analysis/files/new_folder.h"
-#include "core/record/read/imported.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"

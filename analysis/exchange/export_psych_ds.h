@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <span>
 
-#include "analysis/exchange/data_set_options.h"
+#include "analysis/exchange/export_sessions.h"
 
 namespace haptrial::exchange {
 

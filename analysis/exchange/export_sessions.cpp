@@ -10,7 +10,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/record/read/imported.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {

@@ -10,11 +10,10 @@
 #include <variant>
 #include <vector>
 
-#include "analysis/exchange/channel_text.h"
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/other_devices.h"
 #include "analysis/exchange/pass_facts.h"
-#include "analysis/exchange/pass_spans.h"
+#include "analysis/exchange/sample_text.h"
 #include "analysis/files/new_folder.h"
 #include "analysis/files/xdf_file.h"
 #include "analysis/quality/channel_quality.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 
 namespace haptrial::record {
 class SessionReader;

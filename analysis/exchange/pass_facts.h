@@ -8,6 +8,12 @@
 #include "analysis/exchange/columns.h"
 
 namespace haptrial::record {
+
+class SessionReader;
+}
+
+namespace haptrial::record {
+
 class SessionReader;
 }
 
@@ -26,5 +32,16 @@ PassFacts pass_facts(const record::SessionReader& reader);
 
 /// Adds the columns that are not there, by name.
 void merge_columns(const std::vector<ColumnDoc>& more, std::vector<ColumnDoc>& columns);
+
+/// When a pass was, by the session's clock.
+struct PassSpan {
+  double onset{0.0};     // of its first tick, since the first tick of the session [s]
+  double duration{0.0};  // to the end of its last tick; 0: it has none [s]
+};
+
+/// The spans of all passes. A loop that was suspended shifts the clock against the numbers of the
+/// ticks, so that these do not tell the time. A session without samples has that of the numbers.
+/// @throws InputError when the file is damaged.
+std::vector<PassSpan> pass_spans(const record::SessionReader& reader);
 
 }  // namespace haptrial::exchange

@@ -8,10 +8,9 @@
 #include <map>
 
 #include "analysis/document/palette.h"
-#include "analysis/statistics/design/changes.h"
+#include "analysis/statistics/design/compared_sides.h"
 #include "analysis/statistics/design/design_blocks.h"
 #include "analysis/statistics/design/design_lines.h"
-#include "analysis/statistics/design/interval_word.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 

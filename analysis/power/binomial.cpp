@@ -2,8 +2,8 @@
 
 #include <gsl/gsl_cdf.h>
 
-#include "analysis/statistics/base/incomplete_beta.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/distributions.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "analysis/python/meshes.h"
 #include "core/base/error.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/prepared.h"
 

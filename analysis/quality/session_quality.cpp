@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "analysis/quality/run_quality.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/read/trial_facts_of.h"
 
 namespace haptrial::analysis {
 

@@ -7,8 +7,7 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
-#include "core/record/rows/link_row.h"
-#include "core/record/rows/network_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/record/rows/session_tables.h"
 
 namespace haptrial::analysis::link {

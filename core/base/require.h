@@ -4,6 +4,9 @@
 
 namespace haptrial {
 
+/// A length or size that may be infinite but neither 0 nor NaN.
+inline bool is_positive(double x) noexcept { return x > 0.0; }
+
 /// @throws std::invalid_argument with `sentence`, which names the parameter, unless `good`.
 inline void require(bool good, const char* sentence) {
   if (!good) {

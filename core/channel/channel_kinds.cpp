@@ -5,14 +5,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/channel/labjack_channel.h"
-#include "core/channel/line_channel.h"
-#include "core/channel/lsl_channel.h"
-#include "core/channel/neon_channel.h"
-#include "core/channel/rdt_channel.h"
-#include "core/channel/robotiq_channel.h"
-#include "core/channel/vrpn_channel.h"
-
 namespace haptrial::channel {
 namespace {
 

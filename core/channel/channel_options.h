@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/definition/schema.h"
-#include "core/channel/channel_kind.h"
+#include "core/channel/channel_kinds.h"
 
 namespace haptrial::channel {
 

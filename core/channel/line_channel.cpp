@@ -1,4 +1,4 @@
-#include "core/channel/line_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "core/channel/vrpn_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -68,4 +68,13 @@ class ContactSurface {
   double typical_edge_{0.0};
 };
 
+/// A unit normal of every triangle, on the side from which its corners run anticlockwise.
+///
+/// The corners of a triangle that is thinner than 2^-38 of `magnitude` do not tell its normal: they
+/// are rounded to 2^-53 of it. Such a triangle takes the normal of the neighbour across its longest
+/// edge, or, if all of those are as thin, any that is square to that edge. A triangle whose corners
+/// coincide has the normal zero.
+/// @param magnitude  the largest coordinate in size [m]
+std::vector<Eigen::Vector3d> triangle_normals(const geometry::Mesh& mesh, double magnitude);
+
 }  // namespace haptrial::contact

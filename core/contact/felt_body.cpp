@@ -4,9 +4,8 @@
 #include <mutex>
 #include <utility>
 
-#include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/mesh_edges.h"
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 
 namespace haptrial::contact {
 namespace {

@@ -149,10 +149,6 @@ SweepHit sooner(const SweepHit& a, const SweepHit& b, double length, double same
   return first;
 }
 
-}  // namespace
-
-namespace {
-
 /// Vector from the nearest point of a triangle; zero if that is where the point is.
 Eigen::Vector3d away_from_triangle(const Eigen::Vector3d& at, const geometry::Corners& c) {
   const geometry::ClosestPoint nearest = geometry::closest_on_triangle(at, c[0], c[1], c[2]);

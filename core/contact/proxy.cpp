@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "core/contact/arc.h"
-#include "core/contact/face_end.h"
 
 namespace haptrial::contact {
 namespace {

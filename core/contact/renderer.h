@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 
@@ -41,10 +41,14 @@ struct Contact {
   bool settled{true};  // false: the proxy is still on its way
 };
 
-/// Renders contact with one rigid object, prepared once from its mesh.
-///
-/// All positions and forces are in the object's frame, that of the mesh; MovingObjects places
-/// objects in the world.
+/// Pose of an object: from its frame O, that of its mesh, to the world W.
+struct ObjectPose {
+  Eigen::Quaterniond orientation{Eigen::Quaterniond::Identity()};  // of O in W, of unit length
+  Eigen::Vector3d position{Eigen::Vector3d::Zero()};               // p_WO [m]
+};
+
+/// Renders contact with one rigid object, prepared once from its mesh. All positions and forces are
+/// in the object's frame.
 class Renderer {
  public:
   virtual ~Renderer() = default;

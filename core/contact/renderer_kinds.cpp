@@ -1,8 +1,10 @@
 #include "core/contact/renderer_kinds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
+#include "core/base/require.h"
 #include "core/contact/field_renderers.h"
 #include "core/contact/proxy_renderer.h"
 
@@ -93,6 +95,33 @@ RendererKind renderer_kind(std::string_view name) {
     allowed += (allowed.empty() ? "\"" : ", \"") + word + "\"";
   }
   throw std::invalid_argument("renderer \"" + std::string(name) + "\": allowed: " + allowed);
+}
+
+namespace {
+
+void check(const KindOfRenderer& kind, const RendererOptions& options) {
+  require(options.stiffness > 0.0 && std::isfinite(options.stiffness),
+          "stiffness: allowed: finite, above 0");
+  require(options.damping >= 0.0 && std::isfinite(options.damping),
+          "damping: allowed: finite, 0 or more");
+  require(options.crease_angle <= M_PI / 2.0, "crease_angle: allowed: up to pi / 2, or negative");
+  require(options.resolution >= 4 && options.resolution <= 512, "resolution: allowed: 4 to 512");
+  require(kind.tool != Tool::kPoint || options.radius == 0.0,
+          "radius: only proxies have one; allowed: 0");
+  require(kind.tool != Tool::kBall || options.radius > 0.0,
+          ("radius: allowed for " + kind.word + ": above 0").c_str());
+  require(kind.friction || options.friction.static_friction == 0.0,
+          "static_friction: only proxies have friction; allowed: 0");
+}
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_renderer(RendererKind kind, const geometry::Mesh& mesh,
+                                        const ContactSurface& surface,
+                                        const RendererOptions& options) {
+  const KindOfRenderer& made = kind_of(kind);
+  check(made, options);
+  return made.make(mesh, surface, options);
 }
 
 }  // namespace haptrial::contact

@@ -15,7 +15,7 @@ struct KindOfRenderer {
 
   std::string word;  // of `renderer` in [objects.NAME]
   /// The mesh is read, not kept; `surface` outlives the renderer.
-  /// @param options  within their bounds (make_renderer.h), of this kind's tool and friction
+  /// @param options  within their bounds (make_renderer), of this kind's tool and friction
   std::unique_ptr<Renderer> (*make)(const geometry::Mesh& mesh, const ContactSurface& surface,
                                     const RendererOptions& options);
   Tool tool{Tool::kPoint};
@@ -36,5 +36,12 @@ const KindOfRenderer& kind_of(RendererKind renderer);
 std::string_view name_of(RendererKind kind);
 /// @throws std::invalid_argument naming the word and what is allowed.
 RendererKind renderer_kind(std::string_view name);
+
+/// The mesh is read, not kept; `surface` must outlive the renderer, and may serve several.
+/// @throws std::invalid_argument naming the option that breaks its bound, or "radius" for a kind
+///         whose tool is a point, or without one for a kind whose tool is a ball.
+std::unique_ptr<Renderer> make_renderer(RendererKind kind, const geometry::Mesh& mesh,
+                                        const ContactSurface& surface,
+                                        const RendererOptions& options);
 
 }  // namespace haptrial::contact

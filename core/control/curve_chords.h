@@ -2,10 +2,7 @@
 
 #include <cstddef>
 
-#include "core/base/instruction_set.h"
-
-// The arithmetic of a search on a sampled curve: eight chords at once, compiled for each
-// instruction set. All give the same bits.
+// The arithmetic of a search on a sampled curve: eight chords at once.
 namespace haptrial::control {
 
 /// Chords side by side.
@@ -39,17 +36,9 @@ struct ChordLooks {
 /// More than the rounding of a distance to a chord, relative to that distance and to the chord.
 constexpr double kChordRounding = 0x1p-48;
 
-struct ChordKernel {
-  /// The distance to each of eight chords.
-  void (*measure)(const Chords& chords, const ChordQuery& query, ChordLooks& looks);
-  /// The same for eight nodes; bit c says whether node c may hold a place that is of interest.
-  unsigned (*scan)(const ChordPack& pack, const ChordQuery& query, ChordLooks& looks);
-};
-
-/// @throws std::invalid_argument when this machine cannot run it.
-ChordKernel chord_kernel(InstructionSet set = best_instruction_set());
-
-/// Exists where the compiler targets x86-64.
-ChordKernel chord_kernel_avx2();
+/// The distance to each of eight chords.
+void measure_chords(const Chords& chords, const ChordQuery& query, ChordLooks& looks);
+/// The same for eight nodes; bit c says whether node c may hold a place that is of interest.
+unsigned scan_chords(const ChordPack& pack, const ChordQuery& query, ChordLooks& looks);
 
 }  // namespace haptrial::control

@@ -84,7 +84,6 @@ const CurvePlace& CurveTracker::start_at(double arc) noexcept {
 
 const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
   const CurveFollowing& f = following_;
-  // The place is kept by material coordinate, so that a curve that was refitted keeps it.
   const double before = curve_->arc_of(place_.segment, place_.t);
   CurveQuery query;
   query.window = {before - f.step, before + f.step};
@@ -107,7 +106,7 @@ const CurvePlace& CurveTracker::follow(const Eigen::Vector3d& tool) noexcept {
 /// within the shift of one that was.
 bool CurveTracker::is_clear(const Eigen::Vector3d& tool, double arc,
                             double distance) const noexcept {
-  if (clearance_.near < 0.0 || clearance_.revision != curve_->revision()) {
+  if (clearance_.near < 0.0) {
     return false;
   }
   const double moved = (tool - clearance_.tool).norm();
@@ -125,7 +124,7 @@ void CurveTracker::look_further(const Eigen::Vector3d& tool, double arc,
   query.below = nearer + f.step;  // farther than it need be: what it shows holds for some ticks
   const auto found = curve_->nearest(tool, query);
   const double far = (found ? found->distance : query.below) - f.tolerance;
-  clearance_ = {tool, arc, place_.distance - f.tolerance, far, curve_->revision()};
+  clearance_ = {tool, arc, place_.distance - f.tolerance, far};
   if (found && found->distance < nearer) {
     place_ = *found;
   }

@@ -57,7 +57,6 @@ class CurveTracker {
     double arc{0.0};
     double near{-1.0};  // below 0: nothing is known
     double far{-1.0};
-    unsigned revision{0};  // of the curve
   };
   bool is_clear(const Eigen::Vector3d& tool, double arc, double distance) const noexcept;
   void look_further(const Eigen::Vector3d& tool, double arc, CurveQuery query) noexcept;

@@ -45,7 +45,6 @@ class SampledCurve::Search {
  public:
   Search(const SampledCurve& curve, const Vector3d& point, const CurveQuery& query)
       : curve_(curve),
-        kernel_(curve.kernel_),
         q_{point.x(),
            point.y(),
            point.z(),
@@ -109,7 +108,7 @@ class SampledCurve::Search {
   void scan_pack(std::size_t level, std::size_t index, std::size_t skip) noexcept {
     const Pack& p = curve_.levels_[level][index];
     ChordLooks looks;
-    unsigned waiting = kernel_.scan(p, q_, looks);
+    unsigned waiting = scan_chords(p, q_, looks);
     if (skip < kRun) {
       waiting &= ~(1u << skip);
     }
@@ -163,7 +162,7 @@ class SampledCurve::Search {
       return;
     }
     ChordLooks looks;
-    kernel_.measure(s, q_, looks);
+    measure_chords(s, q_, looks);
     std::size_t best = 0;
     for (std::size_t c = 1; c < kRun; ++c) {
       best = looks.square[c] < looks.square[best] ? c : best;
@@ -203,7 +202,6 @@ class SampledCurve::Search {
   }
 
   const SampledCurve& curve_;
-  const ChordKernel kernel_;
   ChordQuery q_;
   double slack_;
   double best_square_;
@@ -226,19 +224,10 @@ SampledCurve::SampledCurve(std::span<const Vector3d> points) : size_(points.size
     levels_.emplace_back((nodes + kRun - 1) / kRun);
     nodes = levels_.back().size();
   }
-  refit(points);
-}
-
-bool SampledCurve::refit(std::span<const Vector3d> points) noexcept {
-  if (points.size() != size_ || !usable(points)) {
-    return false;
-  }
   fill_strips(points);
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     fill_nodes(level);
   }
-  ++revision_;
-  return true;
 }
 
 void SampledCurve::fill_strips(std::span<const Vector3d> points) noexcept {

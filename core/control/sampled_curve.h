@@ -78,14 +78,6 @@ class SampledCurve {
   /// line that joins them; at either end it is that of the last segment. Servo thread.
   Eigen::Vector3d tangent(const CurvePlace& place, const Eigen::Vector3d& point) const noexcept;
 
-  /// The same curve with its points elsewhere, as it bends or stretches; O(N), no allocation. Not
-  /// while another thread asks.
-  /// @returns false, and leaves the curve as it was, where the constructor would throw or the
-  ///   number of points is another.
-  bool refit(std::span<const Eigen::Vector3d> points) noexcept;
-  /// Another number after every refit.
-  unsigned revision() const noexcept { return revision_; }
-
  private:
   using Strip = Chords;  // eight segments; the last strip is filled up with its last point
   using Pack = ChordPack;
@@ -101,9 +93,7 @@ class SampledCurve {
   Eigen::Vector3d direction_after(double arc) const noexcept;
   Eigen::Vector3d direction_before(double arc) const noexcept;
 
-  ChordKernel kernel_{chord_kernel()};
   std::size_t size_;
-  unsigned revision_{0};
   BigArray<Strip> strips_;
   std::vector<BigArray<Pack>> levels_;  // [0]: its nodes are strips; the last has one pack
 };

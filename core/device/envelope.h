@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/device/device.h"
-#include "core/device/energy_watch.h"
 #include "core/device/fault.h"
 #include "core/device/force_watch.h"
 #include "core/device/reading_watch.h"

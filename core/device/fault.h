@@ -33,9 +33,4 @@ constexpr int kFaults = static_cast<int>(Fault::kBeyondLimit) + 1;
 /// One sentence, such as "the tool left the workspace".
 const char* describe(Fault fault) noexcept;
 
-/// Whether a person stopped the device, and so a person has to clear it.
-constexpr bool by_a_person(Fault fault) noexcept {
-  return fault == Fault::kStopButton || fault == Fault::kEmergencyStop;
-}
-
 }  // namespace haptrial::device

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/device/coupled_mass.h"
+#include "core/device/handle_physics.h"
 #include "core/device/pointer_hand.h"
 #include "core/device/virtual_device.h"
 #include "core/realtime/latest_value.h"

@@ -8,6 +8,11 @@
 #include <cmath>
 
 namespace haptrial::questions {
+namespace {
+
+constexpr double kMostSteps = 200.0;
+
+}  // namespace
 
 const Schema<Question>& title_schema() {
   static const auto schema =
@@ -64,6 +69,37 @@ std::vector<int> digits_and(std::initializer_list<int> others) {
   std::vector<int> keys{'0', '1', '2', '3', '4', '5', '6', '7', '8', '9'};
   keys.insert(keys.end(), others);
   return keys;
+}
+
+int steps_of(const Question& question) noexcept {
+  return static_cast<int>(std::lround((question.high - question.low) / question.step));
+}
+
+double value_of_step(const Question& question, int step) noexcept {
+  return question.low + question.step * step;
+}
+
+int step_near(const Question& question, double value) noexcept {
+  constexpr double kFar = 1e9;
+  return static_cast<int>(
+      std::lround(std::clamp((value - question.low) / question.step, -kFar, kFar)));
+}
+
+Schema<Question> steps_schema(std::string key, std::string description, std::string otherwise) {
+  Schema<Question> schema;
+  schema.custom(key, std::move(description), read_range)
+      .otherwise(std::move(otherwise))
+      .number("step", &Question::step, {0.0, 1e9, true}, "",
+              "Distance between neighbouring values of a scale")
+      .otherwise("1; after a trial, without `ends`, digits are typed")
+      .check([key](Table& table, Question& question) {
+        const double steps = (question.high - question.low) / question.step;
+        if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps > kMostSteps) {
+          table.reject(table.has("step") ? "step" : key, fmt::format("{} steps long", steps),
+                       fmt::format("a whole number of steps, at most {}", kMostSteps));
+        }
+      });
+  return schema;
 }
 
 }  // namespace haptrial::questions

@@ -37,4 +37,16 @@ std::optional<double> number_in(std::string_view text) noexcept;
 /// The keys 0 to 9 and the given ones.
 std::vector<int> digits_and(std::initializer_list<int> others);
 
+// Parts of a scale that other kinds with steps share.
+
+/// Steps between both ends of a question, at least 1.
+int steps_of(const Question& question) noexcept;
+/// The number of a step.
+double value_of_step(const Question& question, int step) noexcept;
+/// The step that is nearest to a number, which may lie beyond both ends.
+int step_near(const Question& question, double value) noexcept;
+/// The key of a range, under a name of the kind's own, and `step`.
+/// @param key, description, otherwise  as KeyDescription has them
+Schema<Question> steps_schema(std::string key, std::string description, std::string otherwise);
+
 }  // namespace haptrial::questions

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/questions/scale_kind.h"
+#include "core/questions/question_kinds.h"
 
 namespace haptrial::questions {
 namespace {

@@ -6,13 +6,7 @@
 #include <stdexcept>
 
 #include "core/base/definition/table.h"
-#include "core/questions/choice_kind.h"
-#include "core/questions/consent_kind.h"
-#include "core/questions/number_kind.h"
 #include "core/questions/question_kind.h"
-#include "core/questions/reading_kind.h"
-#include "core/questions/scale_kind.h"
-#include "core/questions/words_kind.h"
 
 namespace haptrial::questions {
 namespace {

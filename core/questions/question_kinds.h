@@ -3,13 +3,22 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
+#include "core/questions/question_kind.h"
 
 namespace haptrial::questions {
 
-class QuestionKind;
+// The shipped kinds beside choice_kind() of question.h.
+
+/// A mark between two ends.
+const QuestionKind& scale_kind();
+/// A number between bounds, which is typed.
+const QuestionKind& number_kind();
+/// Typed words of any script.
+const QuestionKind& words_kind();
+/// Consent to take part, which is accepted or declined.
+const QuestionKind& consent_kind();
+/// A text that is read and gone on from.
+const QuestionKind& reading_kind();
 
 /// Every kind of question, in the order in which sentences list their keys. Call before threads are
 /// started.

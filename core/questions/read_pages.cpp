@@ -6,11 +6,9 @@
 #include <set>
 
 #include "core/base/definition/schema.h"
-#include "core/questions/consent_kind.h"
 #include "core/questions/kind_parts.h"
 #include "core/questions/known_questionnaires.h"
 #include "core/questions/question_kinds.h"
-#include "core/questions/reading_kind.h"
 
 namespace haptrial::questions {
 namespace {

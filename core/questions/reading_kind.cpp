@@ -1,21 +1,43 @@
-#include "core/questions/reading_kind.h"
-
 #include "core/questions/kind_parts.h"
+#include "core/questions/question_kinds.h"
 
 namespace haptrial::questions {
+namespace {
+
+/// A text that is read and gone on from: nothing is asked, and nothing is recorded.
+class ReadingKind final : public QuestionKind {
+ public:
+  std::string word() const override { return "read"; }
+  QuestionTraits traits() const noexcept override {
+    return {.asks = false, .scored = false, .in_trials = false};
+  }
+  std::string key() const override { return ""; }
+  std::vector<int> heard_keys(const Question&) const override { return {}; }
+  bool is_complete(const Question&, const AnswerDraft&) const noexcept override { return true; }
+  Answer answer(const Question&, const AnswerDraft&) const override { return {}; }
+  AnswerDraft draft_of(const Question&, const Answer&) const override { return {}; }
+  std::string parse(const Question&, const std::string&, AnswerDraft&) const override { return ""; }
+  std::string written(const Question&, const AnswerDraft&) const override { return ""; }
+  AnswerView view(const Question&, const AnswerDraft&) const override { return {}; }
+  std::string hint(const Question&, const HintTexts& texts) const override { return texts.go_on; }
+  void simulate(const Question&, std::optional<double>, RandomStream&,
+                AnswerDraft&) const noexcept override {}
+
+  void read(Table& table, Question& question) const override {
+    title_schema().read(table, question);
+    reading_schema().read(table, question);
+  }
+
+  KeyEffect press(const Question&, const KeyPress& key, AnswerDraft&) const noexcept override {
+    return key.key == KeyPress::kSpace ? KeyEffect::kGiven : KeyEffect::kNothing;
+  }
+};
+
+}  // namespace
 
 const QuestionKind& reading_kind() {
   static const ReadingKind kind;
   return kind;
-}
-
-void ReadingKind::read(Table& table, Question& question) const {
-  title_schema().read(table, question);
-  reading_schema().read(table, question);
-}
-
-KeyEffect ReadingKind::press(const Question&, const KeyPress& key, AnswerDraft&) const noexcept {
-  return key.key == KeyPress::kSpace ? KeyEffect::kGiven : KeyEffect::kNothing;
 }
 
 }  // namespace haptrial::questions

@@ -1,5 +1,3 @@
-#include "core/questions/scale_kind.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,11 +6,10 @@
 
 #include "core/base/random.h"
 #include "core/questions/kind_parts.h"
+#include "core/questions/question_kinds.h"
 
 namespace haptrial::questions {
 namespace {
-
-constexpr double kMostSteps = 200.0;
 
 const Schema<Question>& ends_schema() {
   static const auto schema =
@@ -59,142 +56,120 @@ bool type_mark(const Question& question, char digit, AnswerDraft& draft) noexcep
   return true;
 }
 
+/// A mark between two ends, moved in steps by the arrow keys or set by typing a number. Where it
+/// begins is no answer: it has no place until it is moved.
+class ScaleKind final : public QuestionKind {
+ public:
+  std::string word() const override { return "scale"; }
+  QuestionTraits traits() const noexcept override { return {.marks = true}; }
+  std::string key() const override { return "scale"; }
+
+  void read(Table& table, Question& question) const override {
+    scale_schema().read(table, question);
+  }
+
+  std::vector<int> heard_keys(const Question&) const override {
+    return digits_and({KeyPress::kLeft, KeyPress::kRight, KeyPress::kUp, KeyPress::kDown});
+  }
+
+  /// The mark appears in the middle.
+  KeyEffect press(const Question& question, const KeyPress& key,
+                  AnswerDraft& draft) const noexcept override {
+    if (key.key >= '0' && key.key <= '9') {
+      return type_mark(question, static_cast<char>(key.key), draft) ? KeyEffect::kChanged
+                                                                    : KeyEffect::kNothing;
+    }
+    draft.typed.clear();
+    const int before = draft.chosen;
+    const int move = key.key == KeyPress::kRight || key.key == KeyPress::kUp    ? 1
+                     : key.key == KeyPress::kLeft || key.key == KeyPress::kDown ? -1
+                                                                                : 0;
+    if (move != 0) {
+      const int steps = steps_of(question);
+      draft.chosen = std::clamp((before < 0 ? steps / 2 : before) + move, 0, steps);
+    }
+    return draft.chosen != before ? KeyEffect::kChanged : KeyEffect::kNothing;
+  }
+
+  void move_mark(const Question& question, double share,
+                 AnswerDraft& draft) const noexcept override {
+    draft.typed.clear();
+    draft.chosen = static_cast<int>(std::lround(share * steps_of(question)));
+  }
+
+  double share_of_mark(const Question& question, const AnswerDraft& draft) const noexcept override {
+    return static_cast<double>(draft.chosen) / steps_of(question);
+  }
+
+  bool is_complete(const Question& question, const AnswerDraft& draft) const noexcept override {
+    return draft.chosen >= 0 && draft.chosen <= steps_of(question);
+  }
+
+  Answer answer(const Question& question, const AnswerDraft& draft) const override {
+    return {value_of_step(question, draft.chosen), ""};
+  }
+
+  AnswerDraft draft_of(const Question& question, const Answer& answer) const override {
+    AnswerDraft draft;
+    draft.chosen = step_near(question, answer.value);
+    return draft;
+  }
+
+  std::string parse(const Question& question, const std::string& words,
+                    AnswerDraft& draft) const override {
+    const auto number = number_in(words);
+    if (!number || *number < question.low || *number > question.high) {
+      return fmt::format("the answer is '{}'; allowed: a number from {:g} to {:g}",
+                         cut_text(words, 40), question.low, question.high);
+    }
+    const double steps = (*number - question.low) / question.step;
+    if (std::abs(steps - std::round(steps)) > 1e-6) {
+      return fmt::format("the answer is {:g}; allowed: {:g} to {:g} in steps of {:g}", *number,
+                         question.low, question.high, question.step);
+    }
+    draft.chosen = step_near(question, *number);
+    return "";
+  }
+
+  std::string written(const Question& question, const AnswerDraft& draft) const override {
+    return draft.chosen < 0 ? "" : fmt::format("{:g}", value_of_step(question, draft.chosen));
+  }
+
+  AnswerView view(const Question& question, const AnswerDraft& draft) const override {
+    AnswerView view;
+    const int steps = steps_of(question);
+    view.chosen = draft.chosen;
+    view.scale = ScaleView{steps, question.low_end, question.high_end};
+    if (question.low_end.empty()) {
+      view.scale->low_end = fmt::format("{:g}", question.low);
+      view.scale->high_end = fmt::format("{:g}", question.high);
+    }
+    for (int step = 0; step <= steps; ++step) {
+      view.scale->numbers.push_back(fmt::format("{:g}", value_of_step(question, step)));
+    }
+    return view;
+  }
+
+  std::string hint(const Question&, const HintTexts& texts) const override {
+    return texts.move_mark;
+  }
+
+  /// Without anything felt, around the middle.
+  void simulate(const Question& question, std::optional<double> felt, RandomStream& random,
+                AnswerDraft& draft) const noexcept override {
+    constexpr double kSpread = 0.2;  // of the scale
+    const int steps = steps_of(question);
+    draft.chosen = felt ? std::clamp(step_near(question, *felt), 0, steps)
+                        : static_cast<int>(std::round(
+                              steps * std::clamp(0.5 + kSpread * random.normal(), 0.0, 1.0)));
+  }
+};
+
 }  // namespace
 
 const QuestionKind& scale_kind() {
   static const ScaleKind kind;
   return kind;
-}
-
-int steps_of(const Question& question) noexcept {
-  return static_cast<int>(std::lround((question.high - question.low) / question.step));
-}
-
-double value_of_step(const Question& question, int step) noexcept {
-  return question.low + question.step * step;
-}
-
-int step_near(const Question& question, double value) noexcept {
-  constexpr double kFar = 1e9;
-  return static_cast<int>(
-      std::lround(std::clamp((value - question.low) / question.step, -kFar, kFar)));
-}
-
-Schema<Question> steps_schema(std::string key, std::string description, std::string otherwise) {
-  Schema<Question> schema;
-  schema.custom(key, std::move(description), read_range)
-      .otherwise(std::move(otherwise))
-      .number("step", &Question::step, {0.0, 1e9, true}, "",
-              "Distance between neighbouring values of a scale")
-      .otherwise("1; after a trial, without `ends`, digits are typed")
-      .check([key](Table& table, Question& question) {
-        const double steps = (question.high - question.low) / question.step;
-        if (std::abs(steps - std::round(steps)) > 1e-9 * steps || steps > kMostSteps) {
-          table.reject(table.has("step") ? "step" : key, fmt::format("{} steps long", steps),
-                       fmt::format("a whole number of steps, at most {}", kMostSteps));
-        }
-      });
-  return schema;
-}
-
-void ScaleKind::read(Table& table, Question& question) const {
-  scale_schema().read(table, question);
-}
-
-std::vector<int> ScaleKind::heard_keys(const Question&) const {
-  return digits_and({KeyPress::kLeft, KeyPress::kRight, KeyPress::kUp, KeyPress::kDown});
-}
-
-/// The mark appears in the middle.
-KeyEffect ScaleKind::press(const Question& question, const KeyPress& key,
-                           AnswerDraft& draft) const noexcept {
-  if (key.key >= '0' && key.key <= '9') {
-    return type_mark(question, static_cast<char>(key.key), draft) ? KeyEffect::kChanged
-                                                                  : KeyEffect::kNothing;
-  }
-  draft.typed.clear();
-  const int before = draft.chosen;
-  const int move = key.key == KeyPress::kRight || key.key == KeyPress::kUp    ? 1
-                   : key.key == KeyPress::kLeft || key.key == KeyPress::kDown ? -1
-                                                                              : 0;
-  if (move != 0) {
-    const int steps = steps_of(question);
-    draft.chosen = std::clamp((before < 0 ? steps / 2 : before) + move, 0, steps);
-  }
-  return draft.chosen != before ? KeyEffect::kChanged : KeyEffect::kNothing;
-}
-
-void ScaleKind::move_mark(const Question& question, double share,
-                          AnswerDraft& draft) const noexcept {
-  draft.typed.clear();
-  draft.chosen = static_cast<int>(std::lround(share * steps_of(question)));
-}
-
-double ScaleKind::share_of_mark(const Question& question, const AnswerDraft& draft) const noexcept {
-  return static_cast<double>(draft.chosen) / steps_of(question);
-}
-
-bool ScaleKind::is_complete(const Question& question, const AnswerDraft& draft) const noexcept {
-  return draft.chosen >= 0 && draft.chosen <= steps_of(question);
-}
-
-Answer ScaleKind::answer(const Question& question, const AnswerDraft& draft) const {
-  return {value_of_step(question, draft.chosen), ""};
-}
-
-AnswerDraft ScaleKind::draft_of(const Question& question, const Answer& answer) const {
-  AnswerDraft draft;
-  draft.chosen = step_near(question, answer.value);
-  return draft;
-}
-
-std::string ScaleKind::parse(const Question& question, const std::string& words,
-                             AnswerDraft& draft) const {
-  const auto number = number_in(words);
-  if (!number || *number < question.low || *number > question.high) {
-    return fmt::format("the answer is '{}'; allowed: a number from {:g} to {:g}",
-                       cut_text(words, 40), question.low, question.high);
-  }
-  const double steps = (*number - question.low) / question.step;
-  if (std::abs(steps - std::round(steps)) > 1e-6) {
-    return fmt::format("the answer is {:g}; allowed: {:g} to {:g} in steps of {:g}", *number,
-                       question.low, question.high, question.step);
-  }
-  draft.chosen = step_near(question, *number);
-  return "";
-}
-
-std::string ScaleKind::written(const Question& question, const AnswerDraft& draft) const {
-  return draft.chosen < 0 ? "" : fmt::format("{:g}", value_of_step(question, draft.chosen));
-}
-
-AnswerView ScaleKind::view(const Question& question, const AnswerDraft& draft) const {
-  AnswerView view;
-  const int steps = steps_of(question);
-  view.chosen = draft.chosen;
-  view.scale = ScaleView{steps, question.low_end, question.high_end};
-  if (question.low_end.empty()) {
-    view.scale->low_end = fmt::format("{:g}", question.low);
-    view.scale->high_end = fmt::format("{:g}", question.high);
-  }
-  for (int step = 0; step <= steps; ++step) {
-    view.scale->numbers.push_back(fmt::format("{:g}", value_of_step(question, step)));
-  }
-  return view;
-}
-
-std::string ScaleKind::hint(const Question&, const HintTexts& texts) const {
-  return texts.move_mark;
-}
-
-/// Without anything felt, around the middle.
-void ScaleKind::simulate(const Question& question, std::optional<double> felt, RandomStream& random,
-                         AnswerDraft& draft) const noexcept {
-  constexpr double kSpread = 0.2;  // of the scale
-  const int steps = steps_of(question);
-  draft.chosen = felt ? std::clamp(step_near(question, *felt), 0, steps)
-                      : static_cast<int>(std::round(
-                            steps * std::clamp(0.5 + kSpread * random.normal(), 0.0, 1.0)));
 }
 
 }  // namespace haptrial::questions

@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/contact/moving_objects.h"
+#include "core/contact/renderer.h"
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/moving_touch.h"
 #include "core/deformable/touch/two_rate_touch.h"

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "core/scene/field_state.h"
-#include "core/scene/own_way.h"
+#include "core/scene/low_pass.h"
 
 namespace haptrial::scene {
 

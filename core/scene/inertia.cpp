@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/matrix_functions.h"
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 namespace {

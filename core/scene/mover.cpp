@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 namespace {

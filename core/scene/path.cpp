@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 namespace {

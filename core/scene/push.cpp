@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "core/base/require.h"
 #include "core/control/pd_controller.h"
-#include "core/scene/require.h"
 
 namespace haptrial::scene {
 

@@ -1,6 +1,6 @@
 #include "core/scene/registered_law.h"
 
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 

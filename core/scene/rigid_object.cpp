@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/contact/make_renderer.h"
+#include "core/base/require.h"
 #include "core/contact/normal_spring.h"
-#include "core/scene/require.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::scene {
 

@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "core/contact/felt_body.h"
-#include "core/contact/moving_objects.h"
 #include "core/contact/renderer.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field_state.h"

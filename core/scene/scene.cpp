@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <variant>
 
+#include "core/base/require.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/fade.h"
-#include "core/scene/require.h"
 
 namespace haptrial::scene {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
 #include "core/scene/field.h"
-#include "core/scene/own_way.h"
+#include "core/scene/low_pass.h"
 
 namespace haptrial::scene {
 

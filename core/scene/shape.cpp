@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/require.h"
 #include "core/contact/normal_spring.h"
-#include "core/scene/require.h"
 
 namespace haptrial::scene {
 namespace {

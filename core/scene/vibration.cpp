@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "core/base/random.h"
-#include "core/scene/require.h"
+#include "core/base/require.h"
 
 namespace haptrial::scene {
 namespace {

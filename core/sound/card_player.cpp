@@ -49,17 +49,14 @@ CardPlayer::CardPlayer(const std::string& device, Fill fill, Handed handed, unsi
       handed_(std::move(handed)),
       channels_(channels),
       card_(std::make_unique<Card>(device, channels)) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-CardPlayer::~CardPlayer() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
+CardPlayer::~CardPlayer() = default;
 
 /// Samples that the card has run out of time for are tried once more. @returns whether it took them
-bool CardPlayer::write(std::span<const float> part) {
-  while (!stop_.load(std::memory_order_relaxed)) {
+bool CardPlayer::write(std::span<const float> part, const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
     const snd_pcm_sframes_t written = snd_pcm_writei(
         card_->pcm.get(), part.data(), static_cast<snd_pcm_uframes_t>(part.size() / channels_));
     if (written >= 0) {
@@ -79,13 +76,13 @@ bool CardPlayer::write(std::span<const float> part) {
   return false;
 }
 
-void CardPlayer::run() {
+void CardPlayer::run(const std::stop_token& stop) {
   using Clock = std::chrono::steady_clock;
   std::vector<float> part(channels_ * kPart);
   Clock::time_point due = Clock::now();
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     fill_(part);
-    if (!write(part)) {
+    if (!write(part, stop)) {
       return;
     }
     if (handed_) {

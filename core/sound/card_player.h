@@ -37,8 +37,8 @@ class CardPlayer {
 
  private:
   struct Card;
-  void run();
-  bool write(std::span<const float> part);
+  void run(const std::stop_token& stop);
+  bool write(std::span<const float> part, const std::stop_token& stop);
 
   Fill fill_;
   Handed handed_;
@@ -47,8 +47,7 @@ class CardPlayer {
   std::atomic<std::uint64_t> played_{0};
   std::atomic<std::uint64_t> gaps_{0};
   std::atomic<bool> lost_{false};
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it ends before what it uses
 };
 
 }  // namespace haptrial::sound

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include "core/base/definition/schema.h"
+#include "core/base/error.h"
 
 namespace haptrial::sound {
 namespace {
@@ -74,6 +76,37 @@ Eigen::Vector3d DrillVibration::tick(const DrillState& drill, const ToolState& t
   harmonics_.aim(table_.at(drill.burr, drill.contact, drill.force), speed, speed * gain_);
   const Eigen::Vector3d force = harmonics_.next() * (tool.orientation * Eigen::Vector3d::UnitX());
   return force.allFinite() ? force : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
+
+namespace {
+
+/// Adds to the error the alternative of a drilling session.
+[[noreturn]] void offer_file(const RunError& error) {
+  throw RunError(std::string(error.what()) +
+                 "; the session's sound can be written to a WAV file instead");
+}
+
+}  // namespace
+
+SoundOutput::SoundOutput(SpectrumTable table, const ThinBone& thin, std::uint64_t seed,
+                         const std::string& device, Mix mix) try
+    : sound_(std::move(table), thin, seed),
+      mix_(std::move(mix)),
+      player_(device, [this](std::span<float> part) { fill(part); }) {
+} catch (const RunError& error) {
+  offer_file(error);
+}
+
+void SoundOutput::fill(std::span<float> part) noexcept {
+  if (latest_.read(drill_)) {
+    sound_.set(drill_);
+  }
+  for (float& sample : part) {
+    sample = sound_.next();
+  }
+  if (mix_) {
+    mix_(part);
+  }
 }
 
 }  // namespace haptrial::sound

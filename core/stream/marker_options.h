@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/stream/onset.h"
+#include "core/stream/onset_log.h"
 
 namespace haptrial {
 class Table;

@@ -9,7 +9,7 @@
 #include <thread>
 #include <vector>
 
-#include "core/stream/onset.h"
+#include "core/stream/onset_log.h"
 
 namespace haptrial::markers {
 

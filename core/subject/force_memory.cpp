@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/subject/smooth_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial::subject {
 

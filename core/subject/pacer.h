@@ -5,7 +5,7 @@
 
 #include "core/base/random.h"
 #include "core/subject/hand_parameters.h"
-#include "core/subject/smooth_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial {
 template <class T>
@@ -46,7 +46,6 @@ class Pacer {
   /// @param velocity   of the hand along it, as felt now [m/s]
   /// @returns the force of the arm in W [N]
   Eigen::Vector3d drive(const Eigen::Vector3d& direction, double velocity) noexcept;
-  double intended_speed() const noexcept { return intended_; }  // [m/s]
 
  private:
   PaceParameters person_;

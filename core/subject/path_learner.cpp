@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/subject/noise.h"
 #include "core/subject/population_schema.h"
-#include "core/subject/smooth_noise.h"
 
 namespace haptrial::subject {
 namespace {

@@ -10,7 +10,7 @@
 namespace haptrial::subject {
 
 /// A key that states a parameter: `key = M`, the same for everybody, or
-/// `key = { median = M, spread = S }` (variation.h).
+/// `key = { median = M, spread = S }` (population.h).
 template <class Person>
 struct PersonKey {
   const char* name;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/subject/smooth_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial::subject {
 

@@ -10,7 +10,7 @@
 #include "core/subject/force_memory.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 #include "core/subject/pacer.h"
 #include "core/subject/path_learner.h"
 #include "core/subject/perception.h"

@@ -20,7 +20,6 @@ void ClockOffset::add(std::int64_t sent, std::int64_t heard, std::int64_t answer
   const std::int64_t back = now - answered;
   const Answer answer{now, (there - back) / 2, round_trip, {there, back}};
   last_round_trip_ = round_trip;
-  least_round_trip_ = least_round_trip_ < 0 ? round_trip : std::min(least_round_trip_, round_trip);
   if (best_.round_trip < 0) {
     second_ends_ = now + kSecond;
   }

@@ -31,7 +31,6 @@ class ClockOffset {
   /// three seconds.
   double drift() const noexcept { return drift_; }
   std::int64_t round_trip() const noexcept { return last_round_trip_; }  // of the last answer
-  std::int64_t least_round_trip() const noexcept { return least_round_trip_; }  // of all
 
  private:
   static constexpr std::size_t kSeconds = 60;
@@ -62,7 +61,6 @@ class ClockOffset {
   std::int64_t base_{0};
   double drift_{0.0};
   std::int64_t last_round_trip_{-1};
-  std::int64_t least_round_trip_{-1};
 };
 
 }  // namespace haptrial::tutoring

@@ -26,7 +26,6 @@ void CoupledSide::hear(const TickMessage& message, std::int64_t now_ns) noexcept
     return;
   }
   energy_heard_ = std::max(energy_heard_, message.energy);
-  stop_asked_ = stop_asked_ || (message.flags & kStop) != 0;
   if (message.echo_ns != 0) {
     clock_.add(message.echo_ns, message.sent_ns - message.held_ns, message.sent_ns, now_ns);
   }

@@ -5,12 +5,33 @@
 #include <optional>
 
 #include "core/tutoring/clock_offset.h"
+#include "core/tutoring/deadband.h"
+#include "core/tutoring/energy_tank.h"
 #include "core/tutoring/jitter_buffer.h"
 #include "core/tutoring/sequence_window.h"
-#include "core/tutoring/side_parameters.h"
 #include "core/tutoring/tick_message.h"
+#include "core/tutoring/tutoring_law.h"
 
 namespace haptrial::tutoring {
+
+/// Method that keeps a coupling over a delay from swinging up.
+enum class Passivity : std::uint8_t {
+  kNone,  // nothing: right where only one side feels the other
+  kTank,  // tutoring::EnergyTank
+};
+
+struct SideParameters {
+  tutoring::TutoringGains gains;
+  Passivity passivity{Passivity::kTank};
+  tutoring::TankParameters tank;
+  bool sparse{false};  // only the messages that Deadband asks for
+  tutoring::DeadbandParameters deadband;
+  bool even{false};            // partner's ticks as evenly as they were sent; costs delay
+  double late{0.01};           // share of messages that may be too late for that
+  double longest_buffer{0.1};  // [s]
+  double deadline{0.1};        // silence after which the link counts as lost > 0 [s]
+  double ramp{0.5};            // from no force to all of it, also after a loss > 0 [s]
+};
 
 /// One side of a coupling over a link: what it hears, what it feels, what it tells. The same on a
 /// simulated and on a real link. What keeps it passive watches spring and damper; the forces of the
@@ -56,7 +77,6 @@ class CoupledSide {
   /// Whether the partner was heard within the deadline.
   bool linked() const noexcept { return linked_; }
   std::uint64_t losses() const noexcept { return losses_; }               // of the link
-  bool stop_asked() const noexcept { return stop_asked_; }                // by the partner; stays
   const tutoring::Partner& partner() const noexcept { return partner_; }  // as this side takes it
   const TickMessage& newest() const noexcept { return newest_; }
   std::int64_t heard_ns() const noexcept { return heard_ns_; }  // own clock, when that came
@@ -96,7 +116,6 @@ class CoupledSide {
   Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
   bool stepped_{false};
   bool linked_{false};
-  bool stop_asked_{false};
   double strength_{0.0};  // of the ramp, 0 to 1
   double stead_{1.0};     // of the own world, for what the partner's does not do, 0 to 1
   double own_share_{1.0};

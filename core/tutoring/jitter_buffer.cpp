@@ -25,8 +25,7 @@ void JitterBuffer::measure(std::int64_t transit) noexcept {
 void JitterBuffer::put(const TickMessage& message, std::int64_t now) noexcept {
   measure(now - message.sent_ns);
   if (message.sequence <= out_ || message.sequence + kMost <= highest_) {
-    ++too_late_;
-    return;
+    return;  // a newer one was given out
   }
   waiting_[message.sequence % kMost] = message;
   highest_ = std::max(highest_, message.sequence);

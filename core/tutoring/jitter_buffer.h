@@ -27,7 +27,6 @@ class JitterBuffer {
 
   /// Delay on top of the quickest of the last messages [ns].
   std::int64_t delay() const noexcept { return delay_; }
-  std::uint64_t too_late() const noexcept { return too_late_; }  // a newer one was given out
 
  private:
   void measure(std::int64_t transit) noexcept;
@@ -43,7 +42,6 @@ class JitterBuffer {
   TickMessage given_;
   std::int64_t quickest_{0};  // transit
   std::int64_t delay_{0};
-  std::uint64_t too_late_{0};
 };
 
 }  // namespace haptrial::tutoring

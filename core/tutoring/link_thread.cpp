@@ -16,16 +16,14 @@ std::int64_t link_clock_ns() noexcept {
 }
 
 LinkThread::LinkThread(Met met)
-    : met_(std::move(met)), sealer_(met_.keys), opener_(met_.keys), thread_([this] { run(); }) {}
+    : met_(std::move(met)),
+      sealer_(met_.keys),
+      opener_(met_.keys),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-LinkThread::~LinkThread() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
-
-void LinkThread::run() noexcept {
+void LinkThread::run(const std::stop_token& stop) noexcept {
   constexpr timespec kLook{0, 250'000};
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     pollfd watched{met_.datagrams.get(), POLLIN, 0};
     ::ppoll(&watched, 1, &kLook, nullptr);
     take_in();

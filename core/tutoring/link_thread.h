@@ -18,7 +18,6 @@ namespace haptrial::tutoring {
 class LinkThread final : public Wire {
  public:
   explicit LinkThread(Met met);
-  ~LinkThread() override;
   LinkThread(const LinkThread&) = delete;
   LinkThread& operator=(const LinkThread&) = delete;
 
@@ -30,7 +29,7 @@ class LinkThread final : public Wire {
   WireCounts counts() const noexcept override;
 
  private:
-  void run() noexcept;
+  void run(const std::stop_token& stop) noexcept;
   void take_in() noexcept;
   void send_out() noexcept;
   void publish() noexcept;
@@ -44,8 +43,7 @@ class LinkThread final : public Wire {
   std::atomic<std::uint64_t> sent_{0}, accepted_{0}, foreign_{0}, forged_{0}, repeated_{0},
       failed_{0};
   std::atomic<bool> heard_{false};  // somebody takes what arrives
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;             // last: it ends before what it uses
 };
 
 /// The clock of arrivals [ns].

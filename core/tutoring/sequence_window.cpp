@@ -13,7 +13,6 @@ bool SequenceWindow::would_accept(std::uint64_t sequence) const noexcept {
 
 bool SequenceWindow::accept(std::uint64_t sequence) noexcept {
   if (!would_accept(sequence)) {
-    ++refused_;
     return false;
   }
   if (sequence > highest_) {
@@ -22,8 +21,6 @@ bool SequenceWindow::accept(std::uint64_t sequence) noexcept {
       seen_.reset((sequence - i) % kSpan);
     }
     highest_ = sequence;
-  } else {
-    ++overtaken_;
   }
   seen_.set(sequence % kSpan);
   ++accepted_;

@@ -7,7 +7,7 @@
 namespace haptrial::tutoring {
 
 /// Takes each sequence number once: a message that comes twice, or so late that nobody can tell
-/// whether it did, is refused and counted. As in RFC 4303, 3.4.3. Numbers begin with 1.
+/// whether it did, is refused. As in RFC 4303, 3.4.3. Numbers begin with 1.
 /// Servo thread.
 class SequenceWindow {
  public:
@@ -20,8 +20,6 @@ class SequenceWindow {
 
   std::uint64_t highest() const noexcept { return highest_; }
   std::uint64_t accepted() const noexcept { return accepted_; }
-  std::uint64_t overtaken() const noexcept { return overtaken_; }  // accepted, after a later one
-  std::uint64_t refused() const noexcept { return refused_; }      // repeated or too old
   /// Numbers up to the highest that never came.
   std::uint64_t missing() const noexcept { return highest_ - accepted_; }
 
@@ -29,8 +27,6 @@ class SequenceWindow {
   std::bitset<kSpan> seen_;  // at sequence % kSpan
   std::uint64_t highest_{0};
   std::uint64_t accepted_{0};
-  std::uint64_t overtaken_{0};
-  std::uint64_t refused_{0};
 };
 
 }  // namespace haptrial::tutoring

@@ -6,10 +6,29 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/tutoring/channel_conditions.h"
 #include "core/tutoring/tick_message.h"
 
+namespace haptrial {
+template <class T>
+class Schema;
+}
+
 namespace haptrial::tutoring {
+
+/// Effects of a network on messages in one direction.
+struct ChannelConditions {
+  double delay{0.0};        // least [s]
+  double jitter{0.0};       // mean of what comes on top, exponentially distributed [s]
+  double loss{0.0};         // share, 0 to 1
+  double duplication{0.0};  // share that comes twice, each copy with a jitter of its own
+  double reordering{0.0};   // share that does not wait for those before it
+  double bandwidth{0.0};    // [bytes/s]; 0: no limit
+
+  bool operator==(const ChannelConditions&) const = default;
+};
+
+/// The keys of [tutoring.channel], and of a network of [[tutoring.networks]].
+const Schema<ChannelConditions>& channel_schema();
 
 /// One way of a network on the simulated clock: what arrives when is a function of what was sent
 /// when, of the conditions and of a named stream, to the bit. Servo thread: no allocation, lock,

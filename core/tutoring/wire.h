@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/tutoring/channel_conditions.h"
+#include "core/tutoring/simulated_channel.h"
 #include "core/tutoring/tick_message.h"
 
 namespace haptrial::tutoring {

@@ -9,7 +9,6 @@
 
 #include "core/base/error.h"
 #include "experiments/console/console_messages.h"
-#include "experiments/console/console_page.h"
 #include "experiments/server/server.h"
 
 namespace haptrial::experiments {

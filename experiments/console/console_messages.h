@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "experiments/control/session_control.h"
@@ -32,5 +33,8 @@ std::pair<int, std::string> parse_answer(const std::string& json);
 
 /// "pause"
 const char* name_of(Request request) noexcept;
+
+/// console.html as it stands in the source; built in.
+std::string_view console_page_template();
 
 }  // namespace haptrial::experiments

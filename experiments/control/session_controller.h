@@ -1,6 +1,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -10,9 +12,26 @@
 #include "core/record/rows/session_types.h"
 #include "experiments/control/live_status.h"
 #include "experiments/control/session_control.h"
-#include "experiments/control/tick_rate.h"
 
 namespace haptrial::experiments {
+
+/// Ticks per second over the last second. One thread.
+class TickRate {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// How many ticks there have been so far. @param now  never earlier than before
+  void add(Time now, std::uint64_t ticks);
+  /// [Hz]; 0 until two moments at least half a second apart are known.
+  double rate() const;
+
+ private:
+  struct Moment {
+    Time time;
+    std::uint64_t ticks;
+  };
+  std::deque<Moment> moments_;  // of the last second, and the one before them
+};
 
 /// Requests of the experimenter that are not carried out yet.
 struct PendingRequests {

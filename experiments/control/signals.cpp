@@ -1,13 +1,15 @@
 #include "experiments/control/signals.h"
 
+#include <time.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <initializer_list>
 
-#include "experiments/control/fatal_stop_handler.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/keyboard.h"
 
 namespace haptrial::experiments {
@@ -94,6 +96,94 @@ void watch_fatal_signals() {
   }
   handle(SIGPIPE, SIG_IGN);  // a reader that leaves ends no session,
   handle(SIGXFSZ, SIG_IGN);  // and a file that may not grow gets its sentence
+}
+
+namespace {
+
+std::atomic<bool> asked{false};
+std::atomic<void (*)(void*)> hook{nullptr};
+std::atomic<void*> hook_with{nullptr};
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
+
+}  // namespace
+
+bool interrupted() noexcept { return asked.load(); }
+
+void interrupt() noexcept {
+  asked.store(true);
+  if (const auto call = hook.load()) {
+    call(hook_with.load());
+  }
+}
+
+void call_on_interrupt(void (*call)(void*), void* with) noexcept {
+  hook.store(nullptr);
+  hook_with.store(with);
+  hook.store(call);
+}
+
+namespace {
+
+std::atomic<FatalStopHandler*> registered{nullptr};
+static_assert(std::atomic<FatalStopHandler*>::is_always_lock_free);  // for a signal's handler
+
+void pause_for(long nanoseconds) noexcept {
+  timespec left{0, nanoseconds};
+  while (::nanosleep(&left, &left) != 0 && errno == EINTR) {
+  }
+}
+
+/// @returns whether the servo thread has commanded zero.
+bool stopped_by_servo(FatalStopHandler& stop) noexcept {
+  constexpr long kLook = 200'000;  // [ns]
+  constexpr int kLooks = 250;
+  stop.ask();
+  if (stop.on_servo_thread()) {
+    return false;
+  }
+  for (int i = 0; i < kLooks; ++i) {
+    if (stop.done()) {
+      return true;
+    }
+    pause_for(kLook);
+  }
+  return false;
+}
+
+}  // namespace
+
+extern "C" void stop_and_die(int signal) {
+  take_force_away();
+  restore_terminal();
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);  // comes when this handler returns
+}
+
+WatchedStop::WatchedStop(FatalStopHandler& stop) noexcept {
+  [[maybe_unused]] static const int at_exit = std::atexit(take_force_away);
+  registered.store(&stop);
+  call_on_interrupt([](void* each) { static_cast<FatalStopHandler*>(each)->ask(); }, &stop);
+}
+
+WatchedStop::~WatchedStop() {
+  call_on_interrupt(nullptr, nullptr);
+  registered.store(nullptr);
+}
+
+void take_force_away() noexcept {
+  FatalStopHandler* const stop = registered.load();
+  if (stop == nullptr) {
+    return;
+  }
+  constexpr unsigned kLongest = 2;  // [s]
+  ::signal(SIGALRM, SIG_DFL);
+  ::alarm(kLongest);
+  if (!stopped_by_servo(*stop)) {
+    stop->write_zero();
+  }
+  constexpr long kHandOver = 5'000'000;  // to a driver that commands from a thread of its own [ns]
+  pause_for(kHandOver);
+  ::alarm(0);
 }
 
 }  // namespace haptrial::experiments

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "analysis/power/power_result.h"
+#include "experiments/power/power_part.h"
 #include "experiments/power/power_question.h"
-#include "experiments/power/power_unit.h"
 
 namespace haptrial::experiments {
 

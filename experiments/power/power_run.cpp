@@ -12,8 +12,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/control/signals.h"
 #include "experiments/study/unit_locks.h"
 
 namespace haptrial::experiments {

@@ -4,9 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/preview/certified_part.h"
 #include "experiments/preview/preview_pictures.h"
-#include "experiments/preview/stage_names.h"
 #include "experiments/preview/trials_parts.h"
 #include "protocols/psychophysics/definition/handle_text.h"
 

@@ -10,8 +10,8 @@
 
 #include "analysis/document/html.h"
 #include "analysis/document/palette.h"
+#include "experiments/preview/preview_page.h"
 #include "experiments/preview/preview_pictures.h"
-#include "experiments/preview/preview_words.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -133,17 +133,7 @@ void add_virtual_table(const VirtualTrial& trial, Preview& preview) {
   }
 }
 
-}  // namespace
-
-protocols::SessionPlace previewed_session(std::uint64_t seed, int participant) {
-  protocols::SessionPlace place;
-  place.subject = participant_name(participant);
-  place.participant = participant;
-  place.seed = seed;
-  give_seeds(place);
-  return place;
-}
-
+/// Description, warnings and texts that cannot be drawn: the lines of `haptrial validate`.
 void add_checks(const Experiment& experiment, Preview& preview) {
   preview.document.heading("Checks");
   std::vector<std::string> warnings = warnings_of(experiment);
@@ -155,6 +145,17 @@ void add_checks(const Experiment& experiment, Preview& preview) {
     preview.document.paragraph("The definition is valid, and nothing is warned about.");
   }
   preview.document.points(experiment.definition->description());
+}
+
+}  // namespace
+
+protocols::SessionPlace previewed_session(std::uint64_t seed, int participant) {
+  protocols::SessionPlace place;
+  place.subject = participant_name(participant);
+  place.participant = participant;
+  place.seed = seed;
+  give_seeds(place);
+  return place;
 }
 
 void add_objects(Preview& preview) {

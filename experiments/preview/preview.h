@@ -24,8 +24,6 @@ protocols::SessionPlace previewed_session(std::uint64_t seed, int participant = 
 
 // The parts of every experiment. Each adds a heading and what stands below it.
 
-/// Description, warnings and texts that cannot be drawn: the lines of `haptrial validate`.
-void add_checks(const Experiment& experiment, Preview& preview);
 /// preview.objects in a view to be turned; nothing where there are none.
 void add_objects(Preview& preview);
 /// All parts that the experiment has, drawn.

@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/document/document.h"
@@ -33,5 +34,16 @@ class Preview {
  private:
   std::deque<analysis::Drawing> drawings_;
 };
+
+/// The scripts of a preview, in their element, as they stand in the source; built in. NONCE stands
+/// for the nonce of a server that shows the page.
+std::string_view preview_script();
+
+/// Headings and controls of a preview in another language; the English words if there are none.
+/// @param language  "de"; "" and "en" are English
+std::string in_language(std::string_view english, std::string_view language);
+
+/// A page with its headings in another language, marked as such; all else stays.
+std::string with_headings_in(std::string page, std::string_view language);
 
 }  // namespace haptrial::experiments

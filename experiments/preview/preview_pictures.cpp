@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/document/base64.h"
 #include "analysis/document/html.h"
 #include "analysis/document/palette.h"
 #include "core/base/counted.h"
@@ -302,6 +301,23 @@ std::string arrows_svg(const protocols::ForcePlane& plane) {
                : arrow(px, py, fx / size, fy / size, length, shade(size / most));
   }
   return svg + scale_of_shades(most, kLeft + kSide + 50.0, kTop + 40.0) + "</svg>\n";
+}
+
+std::string stage_name(const protocols::PreviewedTrial& trial, const protocols::StagePlace& place) {
+  const protocols::PreviewedInterval& shown = trial.intervals[place.interval];
+  const std::string& name = shown.stages[place.stage].name;
+  return trial.intervals.size() == 1
+             ? name
+             : fmt::format("{} {}: {}", place.interval + 1, shown.name, name);
+}
+
+std::string stage_names(const protocols::PreviewedTrial& trial,
+                        const std::vector<protocols::StagePlace>& places) {
+  std::vector<std::string> names;
+  for (const protocols::StagePlace& place : places) {
+    names.push_back(stage_name(trial, place));
+  }
+  return fmt::format("{}", fmt::join(names, "; "));
 }
 
 }  // namespace haptrial::experiments

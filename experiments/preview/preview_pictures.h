@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/document/figure.h"
+#include "protocols/psychophysics/preview/previewed_trial.h"
 
 namespace haptrial::protocols {
 struct ForcePlane;
@@ -47,5 +48,12 @@ std::string arrows_svg(const protocols::ForcePlane& plane);
 analysis::Figure timeline_figure(std::size_t bars);
 /// The figure of a gallery, with its caption. @param words  about each picture
 analysis::Figure gallery_figure(const std::vector<std::string>& words, const std::string& caption);
+
+/// "1 comparison: press"; without the interval in a trial of one.
+std::string stage_name(const protocols::PreviewedTrial& trial, const protocols::StagePlace& place);
+
+/// The names of stages, one after the other.
+std::string stage_names(const protocols::PreviewedTrial& trial,
+                        const std::vector<protocols::StagePlace>& places);
 
 }  // namespace haptrial::experiments

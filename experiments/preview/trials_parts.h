@@ -1,13 +1,16 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "experiments/preview/preview.h"
+#include "experiments/preview/preview_page.h"
+#include "protocols/definition/definition.h"
 #include "protocols/psychophysics/preview/felt_forces.h"
 #include "protocols/psychophysics/preview/planned_trials.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"
-#include "protocols/psychophysics/preview/seen_stages.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "protocols/psychophysics/preview/stage_words.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::experiments {
 
@@ -29,5 +32,17 @@ void add_stage_table(const protocols::PreviewedTrial& trial, analysis::Document&
 /// All of them.
 void add_trials_parts(const protocols::StudiedDefinition& definition, const PreviewRequest& request,
                       Preview& preview);
+
+/// A demand of an experiment on the device.
+struct DeviceDemand {
+  std::string name;       // of a field, a spring, a burr
+  double stiffness{0.0};  // infinite: the force jumps [N/m]
+  double damping{0.0};    // [N·s/m]
+};
+
+/// Compares demands with the certificate that the definition names (device.certificate); a sentence
+/// if it names none.
+void add_certified(const protocols::Definition& definition,
+                   const std::vector<DeviceDemand>& demands, Preview& preview);
 
 }  // namespace haptrial::experiments

@@ -7,10 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <sstream>
+#include <utility>
 
 #include "core/device/mouse.h"
 #include "core/scene/scene.h"
-#include "experiments/preview/stage_names.h"
+#include "experiments/preview/preview_pictures.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"
 
@@ -166,6 +167,26 @@ void try_lines(TriedTrial& trial, std::istream& in, std::ostream& out) {
   for (std::string line; std::getline(in, line);) {
     out << loop.answer(line) << std::endl;
   }
+}
+
+TriedPass::TriedPass(const protocols::Definition& definition, const Eigen::Vector3d& start)
+    : rate_(definition.rate), start_(start), mouse_(page_hand(definition, start)) {}
+
+void TriedPass::begin(std::unique_ptr<protocols::Pass> pass) {
+  pass_ = std::move(pass);
+  pass_->begin(0);
+  output_ = {};
+}
+
+TriedTrial::Moment TriedPass::tick(const Eigen::Vector3d& pointer) {
+  before_tick();
+  mouse_.reach({pointer, Eigen::Quaterniond::Identity()});
+  device::DeviceReading reading;
+  mouse_.read(reading);
+  reading.buttons = buttons_;
+  output_ = is_over() ? protocols::PassOutput{} : pass_->tick(reading, 1.0 / rate_);
+  mouse_.write({output_.force});
+  return {reading.tool, output_.force};
 }
 
 }  // namespace haptrial::experiments

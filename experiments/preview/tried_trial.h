@@ -11,7 +11,8 @@
 #include "core/device/mouse.h"
 #include "experiments/preview/preview.h"
 #include "experiments/preview/space_objects.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "protocols/interface/pass.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::experiments {
 
@@ -58,5 +59,35 @@ std::shared_ptr<TriedTrial> tried_scenes(const protocols::StudiedDefinition& def
 /// The loop ticks at its own rate up to T; T that lies 0.5 s or more ahead counts as 0.5 s ahead.
 /// Any other line is answered by "? " and a sentence that says what is allowed.
 void try_lines(TriedTrial& trial, std::istream& in, std::ostream& out);
+
+/// A trial of passes under a pointer: the pass of a session, driven by the device "mouse". When a
+/// pass is over, nothing is felt until another begins.
+class TriedPass : public TriedTrial {
+ public:
+  double rate() const final { return rate_; }
+  Eigen::Vector3d start() const final { return start_; }
+  double reach() const final { return mouse_.info().workspace_radius; }
+  Moment tick(const Eigen::Vector3d& pointer) final;
+
+ protected:
+  /// @param definition  outlives the trial  @param start  of the hand, in W [m]
+  TriedPass(const protocols::Definition& definition, const Eigen::Vector3d& start);
+  void begin(std::unique_ptr<protocols::Pass> pass);
+  /// Holds buttons of the device from the next tick on. @param buttons  a bit each
+  void hold(std::uint32_t buttons) noexcept { buttons_ = buttons; }
+  bool is_over() const noexcept { return pass_->state() != protocols::PassState::kRunning; }
+  /// Output of the last tick.
+  const protocols::PassOutput& output() const noexcept { return output_; }
+  /// Called before each tick, such as for buttons that go down and up again.
+  virtual void before_tick() {}
+
+ private:
+  double rate_;
+  Eigen::Vector3d start_;
+  device::MouseDevice mouse_;
+  std::unique_ptr<protocols::Pass> pass_;
+  std::uint32_t buttons_{0};
+  protocols::PassOutput output_;
+};
 
 }  // namespace haptrial::experiments

@@ -10,7 +10,7 @@
 #include "core/realtime/servo_loop.h"
 #include "core/record/rows/trial_rows.h"
 #include "experiments/control/live_status.h"
-#include "protocols/definition/handle_loop.h"
+#include "protocols/definition/definition.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"

@@ -1,13 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/key_press.h"
 #include "core/questions/question.h"
 #include "core/render/flat/text_screen.h"
-#include "experiments/control/asked_item.h"
+#include "core/render/gl/window.h"
+#include "experiments/control/session_control.h"
 #include "protocols/definition/screen_options.h"
 
 namespace haptrial::experiments {
@@ -54,6 +58,36 @@ class PageInput {
   questions::AnswerDraft draft_;
   bool urgent_{false};  // the last key did nothing
   std::optional<questions::Answer> answer_;
+};
+
+/// The keys of the participant's window on their way to a page: from the screen's thread to the
+/// session's. While no page is open they are nobody's here.
+class PageKeys {
+ public:
+  /// Screen's thread. @returns whether a page takes the key; Escape is never a page's
+  bool take(const render::KeyPress& key) {
+    const std::lock_guard lock(mutex_);
+    if (!open_ || key.key == render::KeyPress::kEscape) {
+      return false;
+    }
+    keys_.push_back(key);
+    return true;
+  }
+  /// Session's thread.
+  void set_open(bool open) {
+    const std::lock_guard lock(mutex_);
+    open_ = open;
+    keys_.clear();
+  }
+  std::vector<render::KeyPress> pressed() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(keys_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  bool open_{false};
+  std::vector<render::KeyPress> keys_;
 };
 
 }  // namespace haptrial::experiments

@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/realtime/servo_loop.h"
-#include "experiments/control/fatal_stop_handler.h"
+#include "experiments/control/signals.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::experiments {

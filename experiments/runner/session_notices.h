@@ -5,9 +5,9 @@
 
 #include "core/realtime/servo_loop.h"
 #include "experiments/control/session_controller.h"
-#include "experiments/runner/loop_watch.h"
+#include "experiments/runner/loop_pacing.h"
+#include "experiments/runner/session.h"
 #include "experiments/runner/session_record.h"
-#include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"

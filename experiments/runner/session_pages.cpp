@@ -7,14 +7,15 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "core/base/file_text.h"
+#include "core/base/random.h"
 #include "core/questions/question_kind.h"
-#include "core/questions/reading_kind.h"
+#include "core/questions/question_kinds.h"
 #include "core/render/gl/image.h"
 #include "experiments/runner/earlier_run.h"
-#include "experiments/runner/virtual_answers.h"
 #include "experiments/screen/screen.h"
 
 namespace haptrial::experiments {
@@ -59,6 +60,24 @@ questions::Question last_look(const std::string& text) {
   item.title = shown.title;
   item.text = shown.body;
   return item;
+}
+
+/// Answer of a virtual participant, so that a dry run goes through every page: it consents, chooses
+/// at random, and is mostly right-handed. A random stream of the item's own decides, so that the
+/// answer does not depend on other items.
+/// @param session_seed  of the participant
+/// @param occasion      "before", "after block 2", …
+questions::Answer virtual_answer(const questions::Page& page, const questions::Question& item,
+                                 std::uint64_t session_seed, const std::string& occasion) {
+  RandomStream random(session_seed, fmt::format("page {} {} {}", page.name, item.name, occasion));
+  questions::AnswerDraft draft;
+  if (page.kind == questions::PageKind::kEdinburgh) {
+    constexpr int kRight = 3;  // "right", and "always right"
+    draft.chosen = kRight + static_cast<int>(random.below(2));
+  } else {
+    item.kind->simulate(item, std::nullopt, random, draft);
+  }
+  return item.kind->answer(item, draft);
 }
 
 }  // namespace

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/questions/page.h"
 #include "experiments/control/session_controller.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/page_input.h"
-#include "experiments/runner/page_keys.h"
+#include "experiments/runner/session.h"
 #include "experiments/runner/session_record.h"
-#include "experiments/runner/session_request.h"
 
 namespace haptrial::experiments {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/record/read/definition_versions.h"
-#include "core/record/rows/taken_back_row.h"
+#include "core/record/rows/trial_facts.h"
 #include "experiments/plan/plan_log.h"
 #include "experiments/runner/earlier_run.h"
 #include "experiments/runner/session_opening.h"

@@ -1,5 +1,9 @@
 #include "experiments/runner/sinks.h"
 
+#include <fmt/format.h>
+
+#include "experiments/control/live_status.h"
+
 namespace haptrial::experiments {
 
 /// An answer survives whatever comes after it.
@@ -37,6 +41,48 @@ void StreamSink::samples(std::span<const record::Sample> samples) {
 void StreamSink::event(const record::EventRow& event) {
   if (outlet_ != nullptr) {
     outlet_->mark(event.kind + (event.text.empty() ? "" : ": " + event.text), event.time_ns);
+  }
+}
+
+std::string marker_fields(const record::PassRow& row) {
+  return fmt::format("trial={} practice={} attempt={} block={} repetition={} condition={}",
+                     row.trial, row.practice ? 1 : 0, row.attempt, row.block, row.repetition,
+                     row.condition);
+}
+
+void StreamMarkers::mark(const char* kind, const record::PassRow& row,
+                         const std::string& more) const {
+  outlet_->mark(fmt::format("{}: pass={} phase={} {}{}", kind, pass_, record::name_of(row.phase),
+                            more.empty() ? "" : more + " ", marker_fields(row)),
+                time_ns_);
+}
+
+void StreamMarkers::follow(std::span<const record::Sample> samples, const record::PassRow& row) {
+  if (outlet_ == nullptr) {
+    return;
+  }
+  for (const record::Sample& sample : samples) {
+    if (sample.pass < 0) {
+      continue;
+    }
+    time_ns_ = sample.time_ns;
+    if (sample.pass != pass_) {
+      pass_ = sample.pass;
+      stage_ = record::Stage::kIdle;
+      mark("pass_begin", row, "");
+    }
+    if (sample.stage != stage_) {
+      stage_ = sample.stage;
+      mark("stage", row, fmt::format("stage={}", name_of(stage_)));
+    }
+  }
+}
+
+void StreamMarkers::end_pass(const record::PassRow& row) {
+  if (outlet_ != nullptr && pass_ >= 0) {
+    const bool completed = row.status == record::PassStatus::kCompleted;
+    mark("pass_end", row, fmt::format("status={}", completed ? "completed" : "aborted"));
+    pass_ = -1;
   }
 }
 

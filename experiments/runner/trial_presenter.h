@@ -1,21 +1,54 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "experiments/control/session_controller.h"
-#include "experiments/runner/aborted_pass.h"
 #include "experiments/runner/last_answer.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/reported_mistakes.h"
+#include "experiments/runner/session.h"
 #include "experiments/runner/session_notices.h"
 #include "experiments/runner/session_record.h"
-#include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::experiments {
+
+/// Handling of a pass that was aborted: the reason is recorded and said; then somebody sees to the
+/// cause, or the session ends, or the device recovers. After three in a row that nobody asked for
+/// the session pauses, since the fourth would go the same way. Session's thread.
+class AbortedPass {
+ public:
+  /// All of them outlive it.
+  struct Parts {
+    const protocols::Definition& definition;
+    protocols::Trials& trials;
+    SessionRecord& record;
+    SessionController& controller;
+    LoopPacing& pacing;
+    SessionNotices& notices;
+    bool real{false};  // on a real clock
+  };
+  explicit AbortedPass(const Parts& parts) : p_(parts) {}
+
+  /// @throws RunError where nobody is there to see to a fault
+  void see_to(const protocols::PassResult& result);
+  void note_completed() { in_row_ = 0; }
+
+ private:
+  void pause_after_several(const std::string& why, bool asked);
+  bool asked_for() const;
+  std::string cause(const protocols::PassResult& result) const;
+  std::string why_broken_off() const;
+  void note_abort(const std::string& why);
+  bool partner_stops() const;
+
+  Parts p_;
+  int in_row_{0};  // aborted passes that nobody asked for
+};
 
 /// Presents trials: shows each, runs its passes, keeps its answers. A trial is presented again when
 /// the experimenter repeats it, when its answer is taken back, or when it was aborted while an

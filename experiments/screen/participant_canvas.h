@@ -10,11 +10,10 @@
 #include "core/render/flat/text_screen.h"
 #include "core/render/flat/trial_display.h"
 #include "experiments/screen/frame_pacing.h"
-#include "experiments/screen/screen_pointer.h"
-#include "experiments/screen/session_mark.h"
+#include "experiments/screen/pad_pointer.h"
+#include "experiments/screen/screen.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
-#include "protocols/interface/text_source.h"
 
 namespace haptrial::render {
 class Window;

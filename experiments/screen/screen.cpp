@@ -15,6 +15,7 @@
 #include "core/base/exception_words.h"
 #include "core/realtime/histogram.h"
 #include "core/realtime/latest_value.h"
+#include "core/render/gl/image.h"
 #include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/pad_pointer.h"
 #include "experiments/screen/participant_canvas.h"
@@ -369,6 +370,18 @@ render::Image Screen::screenshot() {
                                           : impl_->trouble);
   }
   return std::move(*std::exchange(impl_->picture, std::nullopt));
+}
+
+std::string ScreenMirror::picture() {
+  const std::lock_guard lock(mutex_);
+  const auto now = std::chrono::steady_clock::now();
+  if (picture_.empty() || now - taken_ >= kPeriod) {
+    const render::Image image = screen_.screenshot();
+    const int times = (image.width + kWidth - 1) / kWidth;
+    picture_ = render::png_bytes(render::coarser(image, times));
+    taken_ = now;
+  }
+  return picture_;
 }
 
 }  // namespace haptrial::experiments

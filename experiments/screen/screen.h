@@ -1,8 +1,10 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,12 +17,17 @@
 #include "core/stimulus/observer.h"
 #include "core/stream/onset_log.h"
 #include "experiments/control/session_control.h"
-#include "experiments/screen/screen_pointer.h"
-#include "experiments/screen/session_mark.h"
+#include "experiments/screen/pad_pointer.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::experiments {
+
+/// A mark over every picture of a session.
+struct SessionMark {
+  std::string words;   // in the upper left corner; empty: none
+  bool framed{false};  // in orange: the session does not count
+};
 
 class Speaker;
 
@@ -115,6 +122,30 @@ class Screen final : public stimulus::Observer {
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
+};
+
+class Screen;
+
+/// Small copies of the participant's picture, for the experimenter's console. Nothing is copied
+/// while nobody asks; a copy costs the screen's thread some milliseconds, and the rest is done on
+/// the thread that asks. Any thread but the servo and the screen's.
+class ScreenMirror {
+ public:
+  /// @param screen  outlives the mirror
+  explicit ScreenMirror(Screen& screen) : screen_(screen) {}
+
+  /// A PNG file at most kWidth wide; the one before if it is younger than kPeriod.
+  /// @throws RunError if the screen shows no picture for two seconds
+  std::string picture();
+
+  static constexpr int kWidth = 640;  // [px]
+  static constexpr std::chrono::milliseconds kPeriod{500};
+
+ private:
+  Screen& screen_;
+  std::mutex mutex_;
+  std::string picture_;
+  std::chrono::steady_clock::time_point taken_{};
 };
 
 }  // namespace haptrial::experiments

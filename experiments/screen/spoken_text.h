@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "protocols/interface/text_source.h"
+#include "protocols/interface/drawing.h"
 
 namespace haptrial::experiments {
 

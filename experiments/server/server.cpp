@@ -13,7 +13,6 @@
 #include "experiments/server/bounded_server_internal.h"
 #include "experiments/server/connection.h"
 #include "experiments/server/listener.h"
-#include "experiments/server/page.h"
 #include "experiments/server/request_filter.h"
 
 namespace haptrial::experiments {

@@ -4,9 +4,11 @@
 #include <set>
 
 #include "analysis/force_training/study/learned_scores.h"
+#include "core/base/definition/schema.h"
 #include "core/base/definition/table.h"
-#include "experiments/studies/learning_names.h"
+#include "core/record/read/marked_trials.h"
 #include "protocols/definition/definition.h"
+#include "protocols/definition/groups.h"
 #include "protocols/force_training/training_pass.h"
 
 namespace haptrial::experiments {
@@ -102,6 +104,28 @@ std::vector<std::string> warnings_of(const analysis::ScoreParameters& p) {
         "comes late or too slowly is scored as a good one");
   }
   return warnings;
+}
+
+analysis::LearningNames learning_names(const protocols::Definition& d) {
+  analysis::LearningNames names;
+  for (const protocols::StudyGroup& group : d.groups) {
+    names.groups.push_back(group.name);
+  }
+  for (int session = 1; session <= d.sessions(); ++session) {
+    names.sessions.push_back(d.session_name(session));
+    if (!d.session_plan(session).gives) {
+      names.tests.push_back(d.session_name(session));
+    }
+  }
+  return names;
+}
+
+void read_mark_rule(Table& root) {
+  if (root.has("analysis")) {
+    Table analysis = root.table("analysis");
+    record::MarkRule rule;
+    record::mark_rule_schema().read(analysis, rule);
+  }
 }
 
 }  // namespace haptrial::experiments

@@ -15,6 +15,14 @@ namespace haptrial::protocols {
 struct Definition;
 }
 
+namespace haptrial::protocols {
+struct Definition;
+}
+
+namespace haptrial {
+class Table;
+}
+
 namespace haptrial::experiments {
 
 /// Analysis of curves of force in a definition: its table [analysis].
@@ -42,5 +50,11 @@ analysis::AnalysisPlan plan_of(const std::vector<std::string>& planned,
 
 /// Sentences on scores that do not mean what they seem to.
 std::vector<std::string> warnings_of(const analysis::ScoreParameters& scoring);
+
+/// Groups and sessions of a study, as its learning plan may name them.
+analysis::LearningNames learning_names(const protocols::Definition& definition);
+
+/// Reads the keys of [analysis] that every protocol has, if the table is there; problems are noted.
+void read_mark_rule(Table& root);
 
 }  // namespace haptrial::experiments

@@ -9,6 +9,10 @@ namespace haptrial {
 class Table;
 }
 
+namespace haptrial {
+class Table;
+}
+
 namespace haptrial::experiments {
 
 /// A key of the definition that is varied.
@@ -42,5 +46,23 @@ PowerPlan read_power_plan(Table& root);
 
 /// Notes keys of [power] that recordings of version 0.2 may have, and no new question.
 void check_new_power(Table& root);
+
+/// Design of the t test whose power a plan states.
+enum class PlannedDesign { kPaired, kTwoSample, kOneSample };
+
+/// Content of a table [plan]: what a preregistration states beside the other keys.
+struct PlanTable {
+  std::vector<std::string> hypotheses;
+  std::vector<std::string> exclusions;
+  std::string stopping;       // empty: when the planned participants have had every session
+  std::vector<double> looks;  // numbers of participants
+  std::string retain_until;   // "2036-12-31"
+  std::optional<double> effect;
+  PlannedDesign design{PlannedDesign::kPaired};
+  double alpha{0.05};
+};
+
+/// Reads the table [plan], if it is there. Problems are noted.
+PlanTable read_plan_table(Table& root);
 
 }  // namespace haptrial::experiments

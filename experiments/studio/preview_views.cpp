@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "experiments/server/request_filter.h"
-#include "experiments/studio/view_parts_internal.h"
 #include "experiments/studio/views_internal.h"
 
 // The views of an experiment before anybody runs it: its page, and a trial to try.

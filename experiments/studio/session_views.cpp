@@ -1,4 +1,4 @@
-#include "experiments/studio/session_views_internal.h"
+#include "experiments/studio/views_internal.h"
 
 #include <fmt/format.h>
 

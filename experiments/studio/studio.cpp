@@ -12,8 +12,6 @@
 #include "experiments/server/server.h"
 #include "experiments/studio/commands.h"
 #include "experiments/studio/line_commands.h"
-#include "experiments/studio/session_views_internal.h"
-#include "experiments/studio/studio_page.h"
 #include "experiments/studio/study_folder.h"
 #include "experiments/studio/views_internal.h"
 

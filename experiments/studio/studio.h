@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptrial::experiments {
@@ -43,5 +44,8 @@ class Studio {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// The studio's page with its styles and scripts as they stand in the source; built in.
+std::string_view studio_page_template();
 
 }  // namespace haptrial::experiments

@@ -12,7 +12,6 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/utf8.h"
-#include "experiments/studio/view_parts_internal.h"
 #include "experiments/studio/views_internal.h"
 
 namespace haptrial::experiments {

@@ -11,8 +11,8 @@
 
 #include "core/base/error.h"
 #include "core/record/hdf5/file_lock.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/read/trial_progress.h"
 #include "experiments/runner/devices.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"

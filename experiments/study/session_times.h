@@ -9,6 +9,10 @@ namespace haptrial::protocols {
 struct Definition;
 }
 
+namespace haptrial::protocols {
+struct Definition;
+}
+
 namespace haptrial::experiments {
 
 /// Durations of recorded sessions, breaks included [s].
@@ -36,5 +40,14 @@ std::string time_words(const SessionTimes& times);
 /// "a session takes 21 minutes (18 to 26 in 12 sessions); 30 sessions take 10.5 hours, 18.0 in the
 /// lab with 15 minutes between them". @param setup  between two sessions [min]
 std::string lab_time(const SessionTimes& times, int sessions, std::optional<double> setup);
+
+struct Roster;
+
+/// Time of a session at most, roughly: its trials and the breaks between them, without pages [s].
+/// @param trials  of the session, at least 1
+double session_seconds(const protocols::Definition& definition, int trials);
+
+/// Sessions that a study still needs until every planned participant has had all of them.
+int sessions_to_come(const Roster& roster);
 
 }  // namespace haptrial::experiments

@@ -14,14 +14,14 @@
 #include "core/base/error.h"
 #include "core/base/fnv.h"
 #include "core/base/parallel.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
+#include "experiments/control/signals.h"
 #include "experiments/plan/study_plan.h"
 #include "experiments/runner/session.h"
 #include "experiments/runner/version.h"
-#include "experiments/study/dry_parts.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/taught_session.h"
+#include "experiments/study/unit_locks.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {

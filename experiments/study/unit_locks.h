@@ -2,6 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace haptrial::experiments {
 
@@ -43,6 +48,39 @@ class TakenUnit {
   const UnitLocks& locks_;
   std::size_t unit_;
   bool taken_;
+};
+
+/// Which of several like processes this one is.
+struct LaunchRank {
+  int rank{0};
+  int size{1};
+};
+
+/// Rank that mpirun (OpenMPI, MPICH) or srun told this process by its environment; nothing: it was
+/// started alone. @param variable  value of an environment variable, or null
+std::optional<LaunchRank> launch_rank(const std::function<const char*(const char*)>& variable);
+std::optional<LaunchRank> launch_rank();
+
+/// A folder whose session files are the state of a dry run: any number of processes may fill it at
+/// once, and the same command again runs what is missing. dry-run.toml says what dry run it is.
+class DryParts {
+ public:
+  /// Makes the folder, or goes on with one.
+  /// @param what  everything on which sessions depend; the same text: the same sessions
+  /// @throws InputError for a folder of something else, or that cannot be written
+  DryParts(const std::filesystem::path& folder, const std::string& what);
+
+  /// Calls run() unless the session is there or another process runs it. What is left of one that
+  /// was killed is removed before. Any thread. @param number  of the session in the dry run
+  void run(std::size_t number, const std::filesystem::path& file, const std::function<void()>& run);
+
+  /// The numbers of those that other processes ran meanwhile, and forgets them.
+  std::vector<std::size_t> elsewhere();
+
+ private:
+  UnitLocks locks_;
+  std::mutex mutex_;
+  std::vector<std::size_t> elsewhere_;
 };
 
 }  // namespace haptrial::experiments

@@ -7,7 +7,7 @@
 
 #include "core/bone/simulator/simulator.h"
 #include "core/device/device.h"
-#include "core/tutoring/packet.h"
+#include "core/tutoring/tick_message.h"
 
 namespace haptrial::protocols {
 

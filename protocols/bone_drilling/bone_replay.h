@@ -9,15 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/record/drilling_types.h"
-#include "core/bone/record/field_row.h"
-#include "core/bone/record/fragment_rows.h"
-#include "core/bone/record/led_row.h"
-#include "core/bone/record/second_hand_row.h"
-#include "core/bone/record/tear_row.h"
-#include "core/bone/record/tuning_row.h"
+#include "core/bone/record/bone_rows.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
 

@@ -10,12 +10,10 @@
 #include "protocols/bone_drilling/display/bone_stage.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "protocols/bone_drilling/led_pass.h"
-#include "protocols/bone_drilling/noted_injuries.h"
+#include "protocols/bone_drilling/procedure_rows.h"
 #include "protocols/bone_drilling/shared_bone.h"
-#include "protocols/bone_drilling/trial_hints.h"
-#include "protocols/bone_drilling/trial_nerves.h"
-#include "protocols/bone_drilling/trial_sound.h"
-#include "protocols/interface/kept_logs.h"
+#include "protocols/bone_drilling/trial_companions.h"
+#include "protocols/interface/session_file.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::protocols {

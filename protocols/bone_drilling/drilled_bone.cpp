@@ -40,21 +40,16 @@ DrilledBone drilled_bone(const BoneReplay& replay, int trial, const BoneReplay::
   marked.source += fmt::format("; after trial {}", trial);
   std::array<std::size_t, 256> counts{};
   std::array<std::uint8_t, 256> labels{};
-  std::size_t at = 0;
-  for (int k = 0; k < before.grid.size[2]; ++k) {
-    for (int j = 0; j < before.grid.size[1]; ++j) {
-      for (int i = 0; i < before.grid.size[0]; ++i, ++at) {
-        const std::uint8_t label = before.labels[at];
-        if (label == 0 || world.holder({i, j, k}) >= 0) {
-          continue;
-        }
-        if (counts[label]++ == 0) {
-          labels[label] = label_of_removed(before.structures[label], marked);
-        }
-        marked.labels[at] = labels[label];
-      }
+  geometry::visit_voxels(before.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    const std::uint8_t label = before.labels[at];
+    if (label == 0 || world.holder(voxel) >= 0) {
+      return;
     }
-  }
+    if (counts[label]++ == 0) {
+      labels[label] = label_of_removed(before.structures[label], marked);
+    }
+    marked.labels[at] = labels[label];
+  });
   for (std::size_t label = 1; label < before.structures.size(); ++label) {
     if (counts[label] > 0) {
       const bone::Structure& structure = before.structures[label];

@@ -8,7 +8,6 @@
 
 #include "core/base/shortest_turn.h"
 #include "core/control/pd_controller.h"
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 
 namespace haptrial::protocols {

@@ -10,7 +10,7 @@
 #include "core/bone/simulator/drilling_view.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/sound/drill_sound.h"
-#include "protocols/bone_drilling/definition/drilling_parameters.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/drilling_rows.h"
 #include "protocols/bone_drilling/region_guard.h"
 #include "protocols/bone_drilling/shared_bone.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/record/tuning_row.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/realtime/latest_value.h"
 #include "core/sound/drill_sound.h"

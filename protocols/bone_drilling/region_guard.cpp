@@ -3,21 +3,10 @@
 #include <utility>
 
 namespace haptrial::protocols {
-namespace {
-
-std::vector<std::uint8_t> labels_of(const bone::RegionMap& map) {
-  std::vector<std::uint8_t> labels;
-  for (std::size_t n = 0; n < map.size(); ++n) {
-    labels.push_back(map.label(n));
-  }
-  return labels;
-}
-
-}  // namespace
 
 RegionGuard::RegionGuard(const bone::RegionSetup& setup, std::shared_ptr<const bone::RegionMap> map,
                          std::shared_ptr<hint::Chime> chime)
-    : region_(setup, map), crossings_(labels_of(*map)), chime_(std::move(chime)) {}
+    : region_(setup, map), crossings_(map->labels()), chime_(std::move(chime)) {}
 
 void RegionGuard::begin_pass(bool given) noexcept {
   given_ = given;

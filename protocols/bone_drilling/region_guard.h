@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "core/bone/hint/chime.h"
-#include "core/bone/region/crossing_row.h"
 #include "core/bone/region/forbidden_region.h"
 #include "core/bone/simulator/simulator.h"
 #include "protocols/bone_drilling/drilling_rows.h"

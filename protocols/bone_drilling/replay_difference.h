@@ -4,9 +4,8 @@
 #include <span>
 #include <string>
 
-#include "core/bone/record/drilling_types.h"
-#include "core/bone/record/fragment_rows.h"
-#include "core/bone/record/tear_row.h"
+#include "core/bone/record/bone_rows.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/bone/simulator/simulator.h"
 
 // A tick of a drilling that is simulated again beside the rows that the session wrote on it. Each

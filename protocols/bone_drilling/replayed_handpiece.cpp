@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 
 namespace haptrial::protocols {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/record/burr_rows.h"
-#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/bone/simulator/bone_touch.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/record/read/session_reader.h"

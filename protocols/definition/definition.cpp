@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <filesystem>
 
 #include "core/base/definition/schema.h"
+#include "core/base/definition/table.h"
 #include "core/questions/read_pages.h"
 #include "protocols/definition/room.h"
 
@@ -231,6 +233,24 @@ void reject_speed(Table& root, const Definition& d, const char* table, const cha
         key, fmt::format("{:g}, which is {:g} m in a tick", speed, speed / d.rate),
         fmt::format("at most envelope.max_jump in a tick, {:g} [m]", d.envelope.max_jump));
   }
+}
+
+control::HandleLoop handle_loop(const Definition& d) {
+  control::HandleLoop loop;
+  loop.handle_mass = d.hand.handle_mass;
+  loop.rate = d.rate;
+  loop.force_delay = d.device.force_delay;
+  loop.velocity_window = device::readings_in_window(d.device.velocity_window, d.rate);
+  for (const device::VendorDevice& vendor : device::vendor_devices()) {
+    // A board is driven only if the definition has its table, which names its line.
+    const bool stated = d.document != nullptr && d.root().has(vendor.table);
+    if (vendor.takes_library || stated) {
+      const auto readings =
+          static_cast<int>(std::lround(vendor.velocity_window(d.vendor) * d.rate));
+      loop.velocity_window = std::max(loop.velocity_window, readings);
+    }
+  }
+  return loop;
 }
 
 }  // namespace haptrial::protocols

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -9,21 +11,22 @@
 
 #include "core/base/definition/given_in.h"
 #include "core/channel/channel_options.h"
+#include "core/control/handle_loop.h"
 #include "core/device/certificate.h"
 #include "core/device/envelope.h"
 #include "core/device/gamepad.h"
+#include "core/device/handle_part.h"
+#include "core/device/motor_faults.h"
 #include "core/device/mouse.h"
 #include "core/device/pedal.h"
 #include "core/device/vendor_devices.h"
 #include "core/device/virtual_device.h"
 #include "core/questions/page.h"
 #include "core/render/flat/trial_display_style.h"
-#include "core/sound/actuator.h"
+#include "core/sound/cue.h"
 #include "core/stream/marker_options.h"
 #include "core/stream/side_stream.h"
 #include "core/subject/hand_parameters.h"
-#include "protocols/definition/button_use.h"
-#include "protocols/definition/device_arm.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/definition/screen_options.h"
@@ -39,6 +42,36 @@ struct CueSet;
 }
 
 namespace haptrial::protocols {
+
+/// A part of a device that sessions drive (core/device/handle_part.h), as a definition states it.
+struct DeviceArm {
+  device::EnvelopeLimits limits;
+  std::string name{};  // in sentences; empty: the only one
+  device::Part part{device::Part::kTip};
+  std::size_t of{0};                    // number of the arm that is the tip of its device
+  double radius{1.0};                   // of the fingers about the axis of a rotation [m]
+  std::optional<double> handle_mass{};  // at the fingers, in place of that of [hand] [kg]
+  // Faults of a virtual device's motors there, in N and m at the fingers; nothing: [device] has
+  // them.
+  std::optional<device::MotorFaults> faults{};
+
+  device::PartUnits units() const { return device::units_of(part, radius); }
+};
+
+/// How many devices these are.
+inline int tips_of(const std::vector<DeviceArm>& arms) {
+  return static_cast<int>(std::ranges::count(arms, device::Part::kTip, &DeviceArm::part));
+}
+
+/// A key of a definition that gives buttons of the devices a function.
+struct ButtonUse {
+  std::string key;           // "buttons.next_tool"
+  std::uint32_t buttons{0};  // any of these, a bit each
+  /// The part of a trial in which they are heard, by its place in the definition: "stages[2]" is
+  /// within "stages", and all are within "".
+  std::string heard_in{};
+  std::optional<std::size_t> device{};  // whose buttons, from 0; nothing: any device's
+};
 
 enum class Integrator { kExact, kCvode };
 
@@ -160,5 +193,11 @@ void check_markers(Table& root, const Definition& definition);
 /// Notes a speed that the envelope ends, either as such or as a jump within a tick.
 void reject_speed(Table& root, const Definition& definition, const char* table, const char* key,
                   double speed);
+
+struct Definition;
+
+/// The loop of the device with the longest velocity window, so that damping that is safe for it is
+/// safe with all devices of the definition.
+control::HandleLoop handle_loop(const Definition& definition);
 
 }  // namespace haptrial::protocols

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/base/definition/translations.h"
@@ -26,5 +28,12 @@ std::vector<std::string> languages_of(const std::filesystem::path& definition);
 /// Texts of a definition in a language: those of its file, and the program's own words.
 /// @throws InputError if there is neither, or the file is wrong
 Translations translations_for(const std::filesystem::path& definition, const std::string& language);
+
+/// The words of the program itself that participants read, in another language, by the English
+/// ones; empty for a language that the program does not speak.
+std::map<std::string, std::string, std::less<>> program_words(std::string_view language);
+
+/// The languages beside English: "de".
+const std::vector<std::string>& program_languages();
 
 }  // namespace haptrial::protocols

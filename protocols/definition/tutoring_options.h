@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/base/definition/given_in.h"
-#include "core/tutoring/channel_conditions.h"
-#include "core/tutoring/side_parameters.h"
+#include "core/tutoring/coupled_side.h"
+#include "core/tutoring/simulated_channel.h"
 #include "core/tutoring/tutoring_law.h"
 
 namespace haptrial {

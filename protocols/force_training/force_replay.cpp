@@ -7,7 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/record/read/even_rows.h"
+#include "core/record/read/tick_rows.h"
 #include "protocols/force_training/recorded_pass.h"
 
 namespace haptrial::protocols {

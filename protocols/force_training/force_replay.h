@@ -7,7 +7,7 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/render/flat/force_panel.h"
-#include "core/render/flat/frames.h"
+#include "core/render/flat/trial_display.h"
 #include "core/render/gl/offscreen.h"
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/force_definition.h"

@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "core/stimulus/stimulus.h"
+#include "core/subject/virtual_subject.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/pass_pictures.h"
 #include "protocols/force_training/trajectory_pass.h"
@@ -52,5 +54,11 @@ class ForceTrials final : public Trials {
 /// which may come sooner after the row before.
 std::vector<record::StimulusRow> stimulus_rows(const stimulus::Stimulus& stimulus,
                                                std::int32_t block, double rate);
+
+/// Lessons that a virtual participant had in earlier sessions of the blocks of this one; nothing in
+/// a first session. The earlier sessions are taken as done as planned by a hand that made no error.
+/// @param place  of the session
+std::vector<subject::Lesson> earlier_lessons(const ForceDefinition& definition,
+                                             const SessionPlace& place);
 
 }  // namespace haptrial::protocols

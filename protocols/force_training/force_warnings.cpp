@@ -6,7 +6,7 @@
 #include "core/base/definition/table.h"
 #include "core/control/loop_margin.h"
 #include "core/stimulus/stimulus.h"
-#include "protocols/definition/handle_loop.h"
+#include "protocols/definition/definition.h"
 #include "protocols/definition/schedule.h"
 #include "protocols/force_training/force_definition.h"
 

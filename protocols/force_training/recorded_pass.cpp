@@ -1,7 +1,5 @@
 #include "protocols/force_training/recorded_pass.h"
 
-#include "protocols/force_training/free_recall.h"
-#include "protocols/force_training/recall.h"
 #include "protocols/force_training/training_pass.h"
 
 namespace haptrial::protocols {
@@ -10,11 +8,9 @@ std::unique_ptr<TrajectoryPass> make_pass(const std::string& condition, record::
                                           const stimulus::Stimulus& stimulus,
                                           const GuidanceParameters& parameters,
                                           std::int32_t block) {
-  if (phase == record::Phase::kTest && parameters.free_recall) {
-    return std::make_unique<FreeRecall>(stimulus, parameters, block);
-  }
   if (phase == record::Phase::kTest) {
-    return std::make_unique<RecallTest>(stimulus, parameters, block);
+    return std::make_unique<TrajectoryPass>(parameters.free_recall ? kFreeRecall : kRecallTest,
+                                            stimulus, parameters, block);
   }
   return make_training_pass(condition, stimulus, parameters, block);
 }

@@ -74,9 +74,10 @@ const Schema<GuidanceParameters>& guidance_schema() {
   return schema;
 }
 
-TrajectoryPass::TrajectoryPass(const stimulus::Stimulus& stimulus,
+TrajectoryPass::TrajectoryPass(const PassKind& kind, const stimulus::Stimulus& stimulus,
                                const GuidanceParameters& parameters, std::int32_t block)
-    : stimulus_(stimulus),
+    : kind_(kind),
+      stimulus_(stimulus),
       parameters_(parameters),
       trajectory_controller_(parameters.trajectory),
       plane_controller_(parameters.plane),
@@ -164,7 +165,7 @@ void TrajectoryPass::end_run_if_over() noexcept {
 }
 
 PointState TrajectoryPass::run_target(const PointState& tool) noexcept {
-  if (run_lead() != RunLead::kGuided) {
+  if (kind_.lead != RunLead::kGuided) {
     if (!shows_expert()) {
       along_ = time_;
     } else if (time_ > 0.0) {
@@ -195,18 +196,14 @@ PassOutput TrajectoryPass::tick(const Readings& readings, double dt) noexcept {
   if (stage_ == Stage::kRun && shows_expert()) {
     play(out, readings[0]);
   }
-  if (stage_ == Stage::kRun && (run_lead() == RunLead::kPlayed || run_lead() == RunLead::kFree)) {
+  if (stage_ == Stage::kRun && (kind_.lead == RunLead::kPlayed || kind_.lead == RunLead::kFree)) {
     target_ = tool.position;  // the way back starts where the hand is
   }
   ++sequence_;
-  if (stage_ == Stage::kRun && !plane_holds()) {
+  if (stage_ == Stage::kRun && !kind_.plane_holds) {
     target_.y() = tool.position.y();  // the return starts where the hand is
   }
   return out;
-}
-
-Eigen::Vector3d TrajectoryPass::expert_place(double progress) const noexcept {
-  return stimulus_.path.at(progress * stimulus_.path.duration()).position;
 }
 
 /// State of the expert, who presses as hard as the pattern asks, so that the world pushes back.
@@ -220,7 +217,7 @@ tutoring::Partner TrajectoryPass::expert() const noexcept {
 
 /// A playback waits while it is asked to, and for a hand that was left behind.
 bool TrajectoryPass::waits_for_hand(const device::DeviceReading& reading) const noexcept {
-  if (stage_ != Stage::kRun || run_lead() != RunLead::kPlayed) {
+  if (stage_ != Stage::kRun || kind_.lead != RunLead::kPlayed) {
     return false;
   }
   const Eigen::Vector3d away = stimulus_.path.at(along_).position - reading.tool.position;
@@ -235,7 +232,7 @@ double TrajectoryPass::longest_run() const noexcept {
 
 /// Target of a guide that fades out: it goes over to where the tool is.
 PointState TrajectoryPass::released(const PointState& tool) noexcept {
-  handover_.ask(run_lead() == RunLead::kWatched ? 0.0 : 1.0);
+  handover_.ask(kind_.lead == RunLead::kWatched ? 0.0 : 1.0);
   const double share = handover_.step(dt_);
   const Eigen::Vector3d& start = stimulus_.path.points().front();
   PointState target{(1.0 - share) * start + share * tool.position, share * tool.velocity};
@@ -250,7 +247,7 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
   const tutoring::Partner model = expert();
   const double share = handover_.share();
   Eigen::Vector3d played = Eigen::Vector3d::Zero();
-  if (run_lead() == RunLead::kPlayed) {
+  if (kind_.lead == RunLead::kPlayed) {
     const tutoring::TutoringGains& gains = parameters_.tutoring.gains;
     const Eigen::Vector3d coupling =
         share * tutoring::coupling_force(gains, model.tool, tool, reading.shares);
@@ -267,7 +264,7 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
         {tool.position, stage_, along_, out.target_force, out.force.y(), out.saturated});
   }
   if (log_ != nullptr) {
-    const double lead = run_lead() == RunLead::kPlayed ? share : 0.0;
+    const double lead = kind_.lead == RunLead::kPlayed ? share : 0.0;
     log_->push({sequence_, along_, lead, model.tool.position, model.force, played});
   }
 }
@@ -275,14 +272,15 @@ void TrajectoryPass::play(PassOutput& out, const device::DeviceReading& reading)
 /// Share of the plane's damper: after a run in which the hand was free along y it may be moving
 /// there, so that the damper comes by degrees.
 double TrajectoryPass::takes_hold() const noexcept {
-  return stage_ == Stage::kReturn && !plane_holds() ? std::clamp(time_ / kBlend, 0.0, 1.0) : 1.0;
+  return stage_ == Stage::kReturn && !kind_.plane_holds ? std::clamp(time_ / kBlend, 0.0, 1.0)
+                                                        : 1.0;
 }
 
 PassOutput TrajectoryPass::output(const device::DeviceReading& reading,
                                   const PointState& target) noexcept {
   const PointState& tool = reading.tool;
   const bool runs = stage_ == Stage::kRun;
-  const bool pushes = runs && !plane_holds();
+  const bool pushes = runs && !kind_.plane_holds;
   PassOutput out;
   out.stage = stage_;
   out.target_force = runs ? stimulus_.force.at(along_) : 0.0;
@@ -339,7 +337,13 @@ stimulus::Presentation TrajectoryPass::presentation(const PassMoment& moment) co
     seen.progress = std::clamp(moment.along / seen.pass_duration, 0.0, 1.0);
     seen.self_paced = guide_.has_value();
     seen.direction = moment.direction;
-    present(seen);
+    seen.instruction = kind_.instruction;
+    seen.show_trajectory = kind_.show_trajectory;
+    seen.show_target_bar = kind_.show_target_bar;
+    seen.show_applied_bar = kind_.show_applied_bar;
+    if (kind_.lead == RunLead::kWatched) {  // the marker is the expert's tool
+      seen.tool = stimulus_.path.at(seen.progress * stimulus_.path.duration()).position;
+    }
     // Values that are not shown are left out: nobody who is presented with the view can know more
     // than a person.
     seen.target_force = seen.show_target_bar ? moment.target_force : 0.0;

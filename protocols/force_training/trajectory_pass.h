@@ -5,7 +5,7 @@
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
 #include "core/realtime/block_log.h"
-#include "core/record/rows/tutoring_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/stimulus/presentation.h"
 #include "core/stimulus/stimulus.h"
 #include "core/tutoring/tutoring_law.h"
@@ -52,6 +52,27 @@ enum class RunLead {
   kFree,     // nothing
 };
 
+/// A kind of pass. During the run the plane constraint holds the hand along y; where it does not,
+/// the device pushes the hand up with the target force. Outside the run the plane always holds.
+struct PassKind {
+  stimulus::Instruction instruction{stimulus::Instruction::kRest};
+  RunLead lead{RunLead::kGuided};
+  bool plane_holds{true};
+  bool show_trajectory{true};
+  bool show_target_bar{false};   // blue: the target force
+  bool show_applied_bar{false};  // green: the applied force, to be matched
+};
+
+/// The test (T) after every training: the plane holds the hand, the participant applies the learnt
+/// force. No picture of the force. Source: Morris 2006, §4.2.4.
+inline constexpr PassKind kRecallTest{stimulus::Instruction::kRecall};
+
+/// The test of path and force: the plane still carries the hand, but nothing leads it along the
+/// path. When the path vanishes from the screen it is the participant's turn, for as long as the
+/// path takes.
+inline constexpr PassKind kFreeRecall{stimulus::Instruction::kReproduce, RunLead::kFree, true,
+                                      false};
+
 /// Ticks of an expert's run.
 using ExpertLog = realtime::BlockLog<record::TutoringRow>;
 
@@ -75,39 +96,28 @@ struct PassMoment {
 ///
 /// The run is over when the path's time is, or, at the participant's own pace, when the hand has
 /// come to its end. The force pattern is a function of how far along the path it is, either way.
-/// The kinds of pass differ in what happens along y during the run and in what is shown; each is a
-/// file of its own. The guide never jumps: every stage begins where the last one left its target.
-class TrajectoryPass : public Pass {
+/// The kinds of pass differ in what happens along y during the run and in what is shown. The guide
+/// never jumps: every stage begins where the last one left its target.
+class TrajectoryPass final : public Pass {
  public:
   /// @param stimulus  outlives the pass.  @param block  names the stimulus in the presentation.
-  TrajectoryPass(const stimulus::Stimulus& stimulus, const GuidanceParameters& parameters,
-                 std::int32_t block);
+  TrajectoryPass(const PassKind& kind, const stimulus::Stimulus& stimulus,
+                 const GuidanceParameters& parameters, std::int32_t block);
 
   /// Sets the log for rows of the expert's run; it outlives the pass. Without it they are not kept.
   void record_expert(ExpertLog& log) noexcept { log_ = &log; }
 
-  void begin(std::uint64_t sequence) noexcept final { sequence_ = sequence; }
-  bool wants_attention() noexcept final {
+  void begin(std::uint64_t sequence) noexcept override { sequence_ = sequence; }
+  bool wants_attention() noexcept override {
     return log_ != nullptr && log_->size() > log_->capacity() / 2;
   }
-  PassOutput tick(const Readings& readings, double dt) noexcept final;
-  PassState state() const noexcept final { return state_; }
+  PassOutput tick(const Readings& readings, double dt) noexcept override;
+  PassState state() const noexcept override { return state_; }
   /// The participant's view at an instant: tick() shows it, and a replay shows it again. Before the
   /// pass and after a fault, when the stage is idle, that is nothing. Servo thread.
   stimulus::Presentation presentation(const PassMoment& moment) const noexcept;
   /// A guide along this pass's path, at its start; nothing where the path sets the pace.
   std::optional<CurveGuide> curve_guide() const;
-
- protected:
-  /// During the run, the plane constraint holds the hand along y; where it does not, the device
-  /// pushes the hand up with the target force. Outside the run the plane always holds.
-  virtual bool plane_holds() const noexcept { return true; }
-  virtual RunLead run_lead() const noexcept { return RunLead::kGuided; }
-  /// Completes what is seen during the run; tool, trajectory and progress are already there.
-  virtual void present(stimulus::Presentation& presentation) const noexcept = 0;
-
-  /// Place of the expert's tool on the path. @param progress  0 to 1
-  Eigen::Vector3d expert_place(double progress) const noexcept;
 
  private:
   void enter(record::Stage stage) noexcept;
@@ -117,7 +127,7 @@ class TrajectoryPass : public Pass {
   PointState run_target(const PointState& tool) noexcept;
   double takes_hold() const noexcept;
   bool shows_expert() const noexcept {
-    return run_lead() == RunLead::kWatched || run_lead() == RunLead::kPlayed;
+    return kind_.lead == RunLead::kWatched || kind_.lead == RunLead::kPlayed;
   }
   bool waits_for_hand(const device::DeviceReading& reading) const noexcept;
   tutoring::Partner expert() const noexcept;
@@ -128,6 +138,7 @@ class TrajectoryPass : public Pass {
   device::ForceIntent intent(const PointState& target, const device::DeviceReading& reading,
                              const Eigen::Vector3d& force, bool pushes) noexcept;
 
+  PassKind kind_;
   const stimulus::Stimulus& stimulus_;
   GuidanceParameters parameters_;
   control::PdController trajectory_controller_;

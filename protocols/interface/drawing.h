@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "core/device/pointer_hand.h"
+#include "core/render/flat/text_screen.h"
 #include "core/stimulus/shown.h"
 
 namespace haptrial::render {
@@ -39,5 +41,23 @@ class Drawing {
 /// Makes a drawing on the screen's thread, with its OpenGL context current and its size [px].
 using MakeDrawing =
     std::function<std::unique_ptr<Drawing>(const render::Gl& gl, int width, int height)>;
+
+/// A picture of words, white on black: enough for a protocol that shows nothing else.
+/// @param page  what is to be read while this is shown. The screen's thread, at every picture
+MakeDrawing text_drawing(std::function<render::TextPage(const stimulus::Shown&)> page);
+
+/// Text of a picture, as a participant reads it.
+struct PictureText {
+  render::TextPage page;
+  std::int64_t occasion{0};  // another number: the same text is asked anew
+};
+
+/// A drawing whose pictures have text. What it draws is what is spoken. The screen's thread.
+class TextSource {
+ public:
+  virtual ~TextSource() = default;
+  /// @param shown  as Drawing::draw() takes it
+  virtual PictureText text(const stimulus::Shown& shown) const = 0;
+};
 
 }  // namespace haptrial::protocols

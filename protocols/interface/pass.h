@@ -7,11 +7,11 @@
 #include <span>
 
 #include "core/device/device.h"
-#include "core/device/energy_watch.h"
 #include "core/device/fault.h"
+#include "core/device/force_watch.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/shown.h"
-#include "core/stream/onset.h"
+#include "core/stream/onset_log.h"
 
 namespace haptrial::protocols {
 

@@ -8,7 +8,7 @@
 #include "core/device/pedal.h"
 #include "core/realtime/block_log.h"
 #include "core/realtime/servo_loop.h"
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/session_types.h"
 #include "core/stimulus/observer.h"
 #include "core/stream/onset_log.h"

@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/live_figures.h"
-#include "core/record/rows/partner_state.h"
-#include "core/record/rows/response.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/record/rows/rows.h"
 #include "core/record/rows/session_types.h"
 #include "core/sound/cue.h"

@@ -6,9 +6,7 @@
 
 #include "core/deformable/touch/moving_touch.h"
 #include "core/deformable/touch/two_rate_touch.h"
-#include "core/record/rows/late_window_row.h"
-#include "core/record/rows/moving_body_row.h"
-#include "core/record/rows/touched_body_row.h"
+#include "core/record/rows/object_rows.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 
 namespace haptrial::protocols {

@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/contact_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/psychophysics/definition/defaults.h"

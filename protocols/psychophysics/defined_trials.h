@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
-#include "core/record/rows/late_window_row.h"
-#include "core/record/rows/object_file_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
-#include "protocols/interface/kept_logs.h"
+#include "protocols/interface/session_file.h"
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/body_report.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -17,7 +16,7 @@
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 #include "protocols/psychophysics/session_scripts.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::protocols {
 

@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows/response.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/trial_rows.h"
-#include "protocols/psychophysics/definition/names_pool.h"
+#include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::protocols {
 

@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "protocols/interface/session_file.h"
-#include "protocols/psychophysics/sequence/kept_script.h"
+#include "protocols/psychophysics/sequence/script_process.h"
 
 namespace haptrial::protocols {
 

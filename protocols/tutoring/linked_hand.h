@@ -7,19 +7,39 @@
 
 #include "core/realtime/block_log.h"
 #include "core/realtime/latest_value.h"
-#include "core/record/rows/link_row.h"
-#include "core/record/rows/partner_state.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/stimulus/observer.h"
 #include "core/tutoring/coupled_side.h"
 #include "core/tutoring/pass_barrier.h"
 #include "core/tutoring/reliable_stream.h"
+#include "core/tutoring/sequence_window.h"
 #include "core/tutoring/tutoring_law.h"
 #include "core/tutoring/wire.h"
 #include "protocols/definition/tutoring_options.h"
 #include "protocols/interface/pass.h"
-#include "protocols/tutoring/link_quality.h"
 
 namespace haptrial::protocols {
+
+/// How well messages come through. Servo thread.
+class LinkQuality {
+ public:
+  void hear(const tutoring::Arrived& arrived) noexcept;
+  /// Takes a tick's counts; call once a tick. @param window  of the messages
+  void step(const tutoring::SequenceWindow& window, std::int64_t now_ns) noexcept;
+
+  /// Mean change of the time under way from message to message (RFC 3550, 6.4.1) [s].
+  double jitter() const noexcept { return jitter_; }
+  double loss() const noexcept { return loss_; }  // share of the last second's messages
+
+ private:
+  std::int64_t transit_{0};  // of the message before, up to the clocks' offset [ns]
+  bool begun_{false};
+  double jitter_{0.0};
+  std::int64_t second_ends_{0};
+  std::uint64_t highest_{0};  // at the beginning of the second
+  std::uint64_t accepted_{0};
+  double loss_{0.0};
+};
 
 /// Role of a side in the beginning: its hand leads or is led.
 enum class LinkRole : std::uint8_t { kTeaches, kLearns };

@@ -128,8 +128,12 @@ class Stage {
     draw();
   }
   Cost moving() {
-    return measure([&](int) { frame_.camera = render::orbited(frame_.camera, 0.002, 0.0); },
-                   [&] { draw(); });
+    const auto go_round = [this](int) {
+      Camera& camera = frame_.camera;
+      const Eigen::AngleAxisd turn(0.002, camera.up.normalized());
+      camera.eye = camera.target + turn * (camera.eye - camera.target);
+    };
+    return measure(go_round, [&] { draw(); });
   }
   Cost resting() {
     for (int i = 0; i < 3; ++i) {
@@ -160,8 +164,7 @@ class Stage {
 
  private:
   static Eigen::AlignedBox3d box_of(const geometry::VoxelGrid& grid) {
-    return {grid.centre(0, 0, 0),
-            grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1)};
+    return {grid.centre(0, 0, 0), grid.centre(grid.last())};
   }
   static render::BoneStyle style_of(bool kept) {
     render::BoneStyle style;

@@ -18,13 +18,12 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/contact/make_renderer.h"
-#include "core/contact/moving_objects.h"
+#include "core/contact/contact_surface.h"
 #include "core/contact/proxy.h"
 #include "core/contact/rigid_tool.h"
 #include "core/contact/signed_distance.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/benchmarks/distance_peers.h"
 
@@ -186,29 +185,6 @@ void scanned(const char* file) {
   press_cube(mesh, surface, way);
 }
 
-/// Ten spheres in one place, all touched.
-bool ten_spheres(const char* how, const Mesh& mesh, const ContactSurface& surface, const Path& path,
-                 bool turned) {
-  using namespace haptrial::contact;
-  RandomStream random(1, "turns");
-  MovingObjects objects;
-  for (int i = 0; i < 10; ++i) {
-    const Vector3d axis(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double angle = turned ? random.uniform(0.0, 3.0) : 0.0;
-    objects.add(make_renderer(RendererKind::kProxy, mesh, surface, {}),
-                {Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized()))});
-  }
-  std::printf("ten spheres of %zu triangles in one place, %s\n", surface.triangles(), how);
-  Vector3d sum = Vector3d::Zero();
-  measure(
-      "  point", path.size(),
-      [&] {
-        objects.start({0, 0, 0.04});
-      },
-      [&](std::size_t i) { sum += objects.tick(path[i], 0.001); });
-  return sum.allFinite();
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -226,11 +202,4 @@ int main(int argc, char** argv) {
   }
   scanned("bunny_watertight_29k_fcpw.obj");
   scanned("dragon_watertight_100k_fcpw.obj");
-
-  const Mesh mesh = haptrial::geometry::make_sphere(0.03, 71);
-  const ContactSurface surface(mesh);
-  const Path path = circle(0.03, 0.001);
-  const bool finite = ten_spheres("alike", mesh, surface, path, false) &&
-                      ten_spheres("each turned its own way", mesh, surface, path, true);
-  return finite ? 0 : 1;
 }

@@ -188,11 +188,8 @@ void print(const Row& row, const Row& peer) {
 
 void measure(const char* name, const Points& points) {
   const double start = now();
-  SampledCurve curve(points);
+  const SampledCurve curve(points);
   const double built = now() - start;
-  const double refit_start = now();
-  curve.refit(points);
-  const double refitted = now() - refit_start;
   const Points path = probe_path(curve);
   const Points box = points_in_box(points, 2000);
   CurveTracker tracker(curve);
@@ -213,8 +210,8 @@ void measure(const char* name, const Points& points) {
   const auto hundred = [&](const Vector3d& p) { return peer.search(p, 100, kWeight).arc; };
   const Row source{"nanoflann, the source's 100 neighbours", cost(path, forget, hundred),
                    cost(box, forget, hundred)};
-  std::printf("\n%s, %zu points, %.2f m (built in %.2f ms, refitted in %.2f ms)\n", name,
-              points.size(), curve.length(), 1e3 * built, 1e3 * refitted);
+  std::printf("\n%s, %zu points, %.2f m (built in %.2f ms)\n", name, points.size(), curve.length(),
+              1e3 * built);
   std::printf("| µs a query | 1 kHz path | worst | in the box | worst | source / this |\n");
   std::printf("| --- | --- | --- | --- | --- | --- |\n");
   for (const Row* row : std::initializer_list<const Row*>{&follow, &nearest, &single, &source}) {

@@ -11,7 +11,7 @@
 
 #include "core/control/handle_guard.h"
 #include "core/device/envelope.h"
-#include "protocols/force_training/recall.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/pass_run.h"
 
 namespace {
@@ -37,7 +37,8 @@ class Unguarded final : public protocols::Pass {
 /// Positions along y, from 100 ms before the handle is let go.
 std::vector<double> let_go(const stimulus::Stimulus& stimulus, bool guarded) {
   const test::Loop loop{1000.0, 1};
-  protocols::RecallTest recall(stimulus, protocols::GuidanceParameters{}, 1);
+  protocols::TrajectoryPass recall(protocols::kRecallTest, stimulus,
+                                   protocols::GuidanceParameters{}, 1);
   Unguarded unguarded(recall);
   protocols::Pass& pass = guarded ? static_cast<protocols::Pass&>(recall) : unguarded;
   test::PassRun run(pass, loop, 0.8);
@@ -90,7 +91,7 @@ void print_costs(const stimulus::Stimulus& stimulus) {
                envelope.check(true, reading);
                sum += envelope.limit({0.0, 2.0, 0.0}, 1e-3).y();
              }));
-  protocols::RecallTest pass(stimulus, {}, 1);
+  protocols::TrajectoryPass pass(protocols::kRecallTest, stimulus, {}, 1);
   fmt::print("pass            {:6.1f} ns\n", cost([&](int i) {
                reading.tool.position.x() = 1e-6 * (i % 100);
                sum += pass.tick(reading, 1e-9).force.y();

@@ -16,7 +16,7 @@
 
 #include "core/base/random.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/mandible.h"
+#include "core/bone/data/procedural_bone.h"
 #include "core/bone/model/flood.h"
 #include "core/bone/model/world.h"
 #include "core/bone/simulator/cut_plane.h"
@@ -149,8 +149,8 @@ void bench_cut_and_split(const BoneModel& model) {
     const double tick = seconds([&] { world.step(); });
     (moving ? move : idle).all.push_back(tick);
   }
-  fmt::print("pieces: {}; the second one {:.0f} voxels; crumbs {:.0f} voxels\n", world.pieces(),
-             world.pieces() > 1 ? world.volume(1).amount() : 0.0, world.crumbled());
+  fmt::print("pieces: {}; the second one {:.0f} voxels\n", world.pieces(),
+             world.pieces() > 1 ? world.volume(1).amount() : 0.0);
   fmt::print("  search {:.2f} ms, at most {:.2f} ms\n", 1e3 * search.share(0.5),
              1e3 * search.share(1.0));
   fmt::print(

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "experiments/command/line/shipped_studies.h"
+#include "experiments/command/line/whole_command.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/study_run.h"
 #include "protocols/psychophysics/response_session.h"

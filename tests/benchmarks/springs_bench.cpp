@@ -16,7 +16,7 @@
 #include "core/deformable/body/skin.h"
 #include "core/deformable/springs/equilibrium.h"
 #include "core/deformable/springs/spring_motion.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/solid_block.h"
 

@@ -13,7 +13,7 @@
 #include "analysis/document/figure_gnuplot.h"
 #include "core/base/random.h"
 #include "core/deformable/springs/spring_forces.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "tests/support/solid_block.h"
 
 namespace {

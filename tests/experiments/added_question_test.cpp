@@ -19,13 +19,14 @@
 #include "core/base/exception_words.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 #include "docs/worked/own/angle.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/studies/study.h"
 #include "experiments/study/study_files.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/felt_or_not.h"
 #include "tests/support/sanitizer.h"
@@ -108,12 +109,7 @@ class AddedQuestionTest : public testing::Test {
             }).detach();
           }
           const Experiment experiment = load_experiment("study.toml");
-          SessionRequest request;
-          request.protocol = &experiment.study->protocol();
-          request.definition = experiment.definition.get();
-          request.subject = "S01";
-          request.seed = 7;
-          request.file = folder_ / name;
+          SessionRequest request = test::session_request(experiment, folder_ / name, 7);
           request.clock = clock;
           request.resume = resume;
           request.ticks = &ticks;

@@ -1,7 +1,7 @@
 // Tests that load definitions find the shipped studies, as those of the command do.
 #include <gtest/gtest.h>
 
-#include "experiments/command/line/shipped_studies.h"
+#include "experiments/command/line/whole_command.h"
 
 namespace haptrial::test {
 namespace {

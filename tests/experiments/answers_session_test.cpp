@@ -14,6 +14,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/felt_or_not.h"
 #include "tests/support/temporary_folder.h"
@@ -28,12 +29,7 @@ class AnswersSessionTest : public testing::Test {
   std::unique_ptr<record::SessionReader> run(const std::string& text) {
     test::write_text(folder_ / "study.toml", text);
     experiment_ = load_experiment(folder_ / "study.toml");
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
-    request.file = file();
+    SessionRequest request = test::session_request(experiment_, file(), 7);
     const SessionSummary summary = run_session(request);
     EXPECT_EQ(summary.aborted_passes, 0);
     auto reader = std::make_unique<record::SessionReader>(file());

@@ -18,6 +18,7 @@
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 
@@ -42,12 +43,8 @@ class BoneSessionTest : public testing::Test {
     folder_.reset();
   }
   static SessionSummary run(const char* file) {
-    SessionRequest request;
-    request.protocol = &protocols::bone_drilling();
-    request.definition = definition_.get();
-    request.subject = "S01";
-    request.seed = 3;
-    request.file = *folder_ / file;
+    SessionRequest request =
+        test::session_request(protocols::bone_drilling(), *definition_, *folder_ / file, 3);
     return run_session(request);
   }
   static record::SessionReader session() { return record::SessionReader(*folder_ / "S01.h5"); }
@@ -101,22 +98,18 @@ TEST_F(BoneSessionTest, RemovalsAndCrumbsAreTheDifferenceOfStartAndEnd) {
   std::size_t crumbs = 0;
   std::size_t missing = 0;
   const bone::BoneWorld& world = std::as_const(*stage->simulator).world();
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i) {
-        if (model.labels[model.grid.index(i, j, k)] == 0) {
-          continue;
-        }
-        const bool there = world.holder({i, j, k}) >= 0;
-        missing += there ? 0 : 1;
-        if (there) {
-          EXPECT_FALSE(gone.contains({i, j, k}));
-        } else if (!gone.contains({i, j, k})) {
-          ++crumbs;  // turned to dust with a part that was too small
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.labels[at] == 0) {
+      return;
     }
-  }
+    const bool there = world.holder(voxel) >= 0;
+    missing += there ? 0 : 1;
+    if (there) {
+      EXPECT_FALSE(gone.contains({voxel.x(), voxel.y(), voxel.z()}));
+    } else if (!gone.contains({voxel.x(), voxel.y(), voxel.z()})) {
+      ++crumbs;  // turned to dust with a part that was too small
+    }
+  });
   EXPECT_EQ(missing, gone.size() + crumbs);
   std::size_t dusted = 0;
   for (const record::SplitRow& row : reader.rows<record::SplitRow>()) {

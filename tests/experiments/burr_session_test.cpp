@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"

@@ -1,6 +1,5 @@
 // Whole sessions of trials and of force training, with hands from a finger to a heavy one: the
 // handle never buzzes, and no force steps that nobody asked for.
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,11 +12,15 @@
 #include <vector>
 
 #include "core/base/definition/table.h"
+#include "core/control/loop_margin.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
+#include "protocols/definition/definition.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 #include "protocols/psychophysics/trials_protocol.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/swings.h"
 #include "tests/support/temporary_folder.h"
@@ -68,12 +71,7 @@ Outcome outcome_of(const record::SessionReader& reader, double rate) {
 Outcome session_of(const protocols::Protocol& protocol, const protocols::Definition& definition,
                    int trials) {
   const test::TemporaryFolder folder;
-  SessionRequest request;
-  request.protocol = &protocol;
-  request.definition = &definition;
-  request.subject = "S01";
-  request.seed = 1;
-  request.file = folder / "S01.h5";
+  SessionRequest request = test::session_request(protocol, definition, folder / "S01.h5", 1);
   request.max_trials = trials;
   run_session(request);
   return outcome_of(record::SessionReader(request.file), definition.rate);
@@ -251,6 +249,69 @@ TEST(CalmHandleTest, At4000HertzThePlaneDoesNotChatter) {
   const Outcome outcome = session_of(protocols::force_training(), force_study(4000.0, 1, 0.8), 2);
   EXPECT_EQ(outcome.train, 0.0);
   EXPECT_EQ(outcome.aborted, 0);
+}
+
+}  // namespace
+
+// Whole sessions with hands that do not carry the damping that the definition asks for.
+
+namespace {
+
+struct LightHandOutcome {
+  double at_limit{0.0};  // [s]
+  int completed{0};
+  int reduced{0};  // passes whose damping was reduced
+};
+
+LightHandOutcome session_with(double hand_mass, int trials) {
+  const test::TemporaryFolder folder;
+  protocols::ForceDefinition definition =
+      protocols::load_force_definition(test::shipped_definition());
+  const double share = hand_mass / definition.hand.hand_mass;
+  definition.hand.hand_mass = hand_mass;
+  definition.hand.damping *= share;
+  definition.hand.stiffness *= share;
+  SessionRequest request =
+      test::session_request(protocols::force_training(), definition, folder / "S01.h5", 1);
+  request.max_trials = trials;
+  run_session(request);
+  const record::SessionReader reader(request.file);
+  LightHandOutcome outcome;
+  for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
+    outcome.at_limit += sample.force.norm() >= 0.98 * 12.0 ? 1.0 / definition.rate : 0.0;
+  }
+  const auto passes = reader.passes();
+  outcome.completed = static_cast<int>(std::ranges::count_if(
+      passes, [](const auto& pass) { return pass.status == record::PassStatus::kCompleted; }));
+  outcome.reduced = static_cast<int>(record::reduced_damping(reader).size());
+  return outcome;
+}
+
+TEST(LightHandTest, ASessionWithAHandOfHalfAKilogramIsQuietAndItsPassesSayWhatWasReduced) {
+  const LightHandOutcome light = session_with(0.5, 3);
+  EXPECT_LT(light.at_limit, 1.0) << "targets of 12 N leave some";
+  EXPECT_EQ(light.completed, 6);
+  EXPECT_GT(light.reduced, 0);
+}
+
+TEST(LightHandTest, AHandThatCarriesItIsGuidedAsTheDefinitionSays) {
+  const LightHandOutcome heavy = session_with(1.5, 3);
+  EXPECT_EQ(heavy.completed, 6);
+  EXPECT_EQ(heavy.reduced, 0);
+}
+
+TEST(LightHandTest, TheMarginOfTheShippedStudySaysWhichHandsCarryIt) {
+  const protocols::ForceDefinition d = protocols::load_force_definition(test::shipped_definition());
+  const control::LoopMargin plane =
+      control::loop_margin("plane", d.guidance.plane, protocols::handle_loop(d));
+  EXPECT_LT(plane.lightest, d.hand.hand_mass) << "the hand of the study carries its gains";
+  EXPECT_GT(plane.lightest, 0.5);
+  EXPECT_GT(plane.lightest_late, plane.lightest);
+  EXPECT_FALSE(control::is_dangerous(plane));
+  EXPECT_NE(describe(plane).find("no less than 15.7 N·s/m for the bare handle"), std::string::npos)
+      << describe(plane);
+  EXPECT_TRUE(
+      control::is_dangerous(control::loop_margin("stiff", {20000.0, 300.0}, handle_loop(d))));
 }
 
 }  // namespace

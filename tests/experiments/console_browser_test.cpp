@@ -11,7 +11,7 @@
 
 #include "experiments/console/console.h"
 #include "experiments/console/console_messages.h"
-#include "experiments/studies/drilling/drilled_procedure.h"
+#include "experiments/studies/drilling/live_drilling.h"
 #include "tests/experiments/browser.h"
 #include "tests/support/temporary_folder.h"
 

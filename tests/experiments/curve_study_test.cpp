@@ -19,6 +19,7 @@
 #include "protocols/force_training/force_protocol.h"
 #include "protocols/force_training/force_replay.h"
 #include "protocols/force_training/recorded_path.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/replaced.h"
 #include "tests/support/temporary_folder.h"
@@ -48,12 +49,8 @@ std::string without_noise(std::string text) {
 record::SessionReader record_session(const protocols::ForceDefinition& definition,
                                      const fs::path& file, int trials,
                                      const std::string& subject = "S01") {
-  SessionRequest request;
-  request.protocol = &protocols::force_training();
-  request.definition = &definition;
-  request.subject = subject;
-  request.seed = 1;
-  request.file = file;
+  SessionRequest request =
+      test::session_request(protocols::force_training(), definition, file, 1, subject);
   request.max_trials = trials;
   run_session(request);
   return record::SessionReader(file);

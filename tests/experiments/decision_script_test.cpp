@@ -20,6 +20,7 @@
 #include "experiments/studies/experiment.h"
 #include "protocols/psychophysics/sequence/scripted_decisions.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -79,13 +80,8 @@ class DecisionScriptTest : public testing::Test {
            realtime::ClockKind clock = realtime::ClockKind::kSimulated, bool resume = false) const {
     write(script);
     const Experiment experiment = load_experiment(folder_ / "study.toml");
-    SessionRequest request;
-    request.protocol = &experiment.study->protocol();
-    request.definition = experiment.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
+    SessionRequest request = test::session_request(experiment, folder_ / name, 7);
     request.max_trials = trials;
-    request.file = folder_ / name;
     request.clock = clock;
     request.resume = resume;
     run_session(request);

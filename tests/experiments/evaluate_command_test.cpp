@@ -15,7 +15,7 @@
 #include "core/base/fnv.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/object_file_row.h"
+#include "core/record/rows/object_rows.h"
 #include "protocols/psychophysics/objects/object_files.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

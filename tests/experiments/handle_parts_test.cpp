@@ -12,8 +12,7 @@
 #include <optional>
 
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/arm_row.h"
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/console_person.h"

@@ -15,11 +15,12 @@
 #include "core/base/file_text.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 #include "experiments/control/session_control.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
 
@@ -108,14 +109,9 @@ class LiveKilledPagesTest : public testing::Test {
   std::filesystem::path file() const { return folder_ / "S01.h5"; }
   void run(int number, int last) {
     SessionControl control;
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
+    SessionRequest request = test::session_request(experiment_, file(), 7);
     request.definition_folder = folder_.path();
-    request.subject = "S01";
-    request.seed = 7;
     request.max_trials = 1;
-    request.file = file();
     request.clock = realtime::ClockKind::kReal;
     request.device = {"virtual", "", 0};
     request.control = &control;

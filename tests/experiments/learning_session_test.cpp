@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/tutoring_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/command.h"

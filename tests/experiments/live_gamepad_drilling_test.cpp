@@ -1,10 +1,8 @@
 // A game controller drills the shipped bone in a window, and hints are seen there. A pipe stands
 // for the controller.
-
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -183,6 +181,133 @@ TEST_F(LiveGamepadDrillingTest, WithoutATableThereIsASentence) {
   const auto blind = test::run_command("haptrial run '" + shipped + "' --device gamepad");
   EXPECT_EQ(blind.status, 2);
   EXPECT_THAT(blind.errors, HasSubstr("--device gamepad takes its pointer"));
+}
+
+// README's first drilling: mouse and keyboard alone drill the shipped bone in a window.
+
+constexpr unsigned kLeft = 1;
+constexpr unsigned kWheelUp = 4;
+constexpr unsigned kWheelDown = 5;
+constexpr unsigned long kRightKey = 0xff53;
+
+class LiveMouseDrillingTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    display_.emplace(width_, height_);
+    std::string text =
+        test::read_text(fs::path(HAPTRIAL_SOURCE_DIR) / "experiments/first_drilling.toml");
+    text = test::replaced(text, "card = true", "card = false");
+    text = test::replaced(text, "time_limit = 120.0", "time_limit = 3600.0");
+    if (kept_pictures() == nullptr) {  // what takes time
+      text = test::replaced(text, "width = 1280", "width = " + std::to_string(width_));
+      text = test::replaced(text, "height = 720", "height = " + std::to_string(height_));
+      text = test::replaced(text, "seed = 1 ", "spacing = 0.0008\nseed = 1 ");
+    }
+    test::write_text(folder_ / "study.toml", text);
+  }
+  fs::path file() const { return folder_ / "out/P01.h5"; }
+  template <class Row>
+  std::uint64_t rows() const {
+    try {
+      return record::SessionReader(file().string() + ".partial").count<Row>();
+    } catch (const std::exception&) {  // not there yet
+      return 0;
+    }
+  }
+  double tilt() const {  // of the tool in the last row [rad]
+    const record::SessionReader reader(file().string() + ".partial");
+    const std::uint64_t last = reader.count<record::ToolRow>() - 1;
+    return reader.rows<record::ToolRow>(last, 1)[0].orientation.angularDistance(
+        Eigen::Quaterniond::Identity());
+  }
+  void roll(unsigned wheel, int steps) const {
+    for (int i = 0; i < steps; ++i) {
+      display_->press_button(kTitle, wheel);
+      display_->release_button(kTitle, wheel);
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  void move(double x, double y) const {  // as shares of the window
+    display_->move_pointer(static_cast<int>(x * width_), static_cast<int>(y * height_));
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  }
+  void keep(const std::string& name) const {
+    if (const char* folder = kept_pictures()) {
+      render::write_png(fs::path(folder) / name,
+                        render::Image{width_, height_, display_->screenshot()});
+    }
+  }
+
+  int width_{kept_pictures() != nullptr ? 1280 : 640};
+  int height_{kept_pictures() != nullptr ? 720 : 480};
+  test::TemporaryFolder folder_;
+  std::optional<VirtualDisplay> display_;
+};
+
+TEST_F(LiveMouseDrillingTest, WheelAndLeftButtonDrillAndTheArrowsTilt) {
+  test::LiveCommand session("run '" + (folder_ / "study.toml").string() + "' --out '" +
+                            (folder_ / "out").string() + "' --device mouse --window");
+  ASSERT_TRUE(session.reaches([&] {
+    keep("first-drilling-0.png");
+    display_->try_key(kTitle, VirtualDisplay::kEnter);
+    return rows<record::ToolRow>() > 0;
+  })) << session.errors();
+  move(0.5, 0.45);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  keep("first-drilling-1.png");
+  display_->press_button(kTitle, kLeft);
+  test::wait_until([&] {
+    roll(kWheelUp, 2);
+    return rows<record::RemovalRow>() > 0;
+  });  // deeper and deeper it comes to the bone
+  // Strokes across a field, deeper after every eight.
+  constexpr int kSteps = 12;
+  for (int stroke = 0; stroke < (kept_pictures() != nullptr ? 100 : 4); ++stroke) {
+    roll(kWheelUp, stroke % 8 == 7 ? 1 : 0);
+    for (int i = 0; i <= kSteps; ++i) {
+      const double across = static_cast<double>(stroke % 2 == 0 ? i : kSteps - i) / kSteps;
+      move(0.42 + 0.12 * across, 0.40 + 0.015 * (stroke % 5));
+    }
+  }
+  keep("first-drilling-2.png");
+  display_->release_button(kTitle, kLeft);
+  roll(kWheelDown, 60);
+  display_->hold_key(kTitle, kRightKey);
+  ASSERT_TRUE(session.reaches([&] { return tilt() > 0.1; })) << session.errors();
+  display_->release_key(kTitle, kRightKey);
+  keep("first-drilling-3.png");
+  display_->press_key(kTitle, 'f');
+  const test::CommandResult ended = session.wait();
+  ASSERT_EQ(ended.status, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("page: " + (folder_ / "out/P01.html").string()));
+  const std::string page = test::read_text(folder_ / "out/P01.html");
+  EXPECT_THAT(page, HasSubstr("P01"));
+  EXPECT_THAT(page, testing::Not(HasSubstr("SIMULATED"))) << "a person drilled";
+
+  const record::SessionReader reader(file());
+  EXPECT_EQ(reader.info().device, "mouse");
+  EXPECT_FALSE(reader.info().simulated);
+  const auto all = reader.rows<record::ToolRow>();
+  std::vector<record::ToolRow> active;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(active),
+               [](const record::ToolRow& row) { return row.active; });
+  ASSERT_GT(active.size(), 1000u);
+  for (std::size_t i = 0; i < 500; ++i) {
+    ASSERT_EQ(active[i].immersed, 0) << "the tip begins outside of bone, tick " << i;
+  }
+  double hardest = 0.0;
+  for (const record::ToolRow& row : active) {
+    hardest = std::max(hardest, row.contact.norm());
+  }
+  EXPECT_GT(hardest, 0.3);
+  EXPECT_LT(hardest, 8.0) << "2.4 N of the spring, and what the tool brings along";
+  EXPECT_LT(active.front().orientation.angularDistance(Eigen::Quaterniond::Identity()), 1e-3);
+  EXPECT_GT(active.back().orientation.angularDistance(Eigen::Quaterniond::Identity()), 0.1);
+  EXPECT_EQ(reader.passes().at(0).status, record::PassStatus::kCompleted);
+
+  const test::CommandResult replay = test::run_command("haptrial replay '" + file().string() + "'");
+  EXPECT_EQ(replay.status, 0) << replay.errors;
+  EXPECT_THAT(replay.output, HasSubstr("trial 1: the same bone"));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/link_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/tutoring/sockets.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/console_person.h"

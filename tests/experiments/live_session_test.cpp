@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "core/record/read/integrity.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/read/trial_progress.h"
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"

@@ -10,7 +10,7 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/render/flat/frames.h"
+#include "core/render/flat/trial_display.h"
 #include "protocols/force_training/force_definition.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/console_person.h"

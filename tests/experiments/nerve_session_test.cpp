@@ -33,6 +33,7 @@
 #include "protocols/bone_drilling/nerve_page.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -72,13 +73,7 @@ fs::path write_monitored(const fs::path& folder, double seconds,
 }
 
 SessionRequest request_of(const protocols::BoneDefinition& definition, const fs::path& file) {
-  SessionRequest request;
-  request.protocol = &protocols::bone_drilling();
-  request.definition = &definition;
-  request.subject = "S01";
-  request.seed = 3;
-  request.file = file;
-  return request;
+  return test::session_request(protocols::bone_drilling(), definition, file, 3);
 }
 
 class NerveSessionTest : public testing::Test {

@@ -9,10 +9,10 @@
 #include <map>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/fragment_rows.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/studies/drilling/procedure_setup.h"
+#include "experiments/studies/drilling/drilling_study.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

@@ -15,7 +15,7 @@
 
 #include "core/base/file_text.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/line/command_line.h"
+#include "experiments/command/line/whole_command.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"

@@ -3,17 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <map>
 #include <stdexcept>
-#include <thread>
 #include <tuple>
 
 #include "core/base/definition/schema.h"
@@ -23,9 +18,8 @@
 #include "core/geometry/mesh/procedural.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/contact_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
-#include "core/scene/read/field_bounds.h"
 #include "core/scene/read/field_kinds.h"
 #include "core/scene/read/shape_kinds.h"
 #include "docs/worked/own/ring.h"
@@ -33,6 +27,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/message_of.h"
 #include "tests/support/sanitizer.h"
@@ -133,35 +128,7 @@ class OwnShapeTest : public testing::Test {
     experiment_ = load_experiment(folder_ / "own.toml");
   }
   SessionRequest request(const std::filesystem::path& file) const {
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
-    request.file = file;
-    return request;
-  }
-  /// Runs a session on the real clock in a process of its own, which is killed at a tick.
-  void run_and_kill(const std::filesystem::path& file, std::uint64_t at_tick) const {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      std::atomic<std::uint64_t> ticks{0};
-      std::thread([&] {
-        while (ticks.load() < at_tick) {
-          std::this_thread::sleep_for(std::chrono::microseconds(200));
-        }
-        ::kill(::getpid(), SIGKILL);
-      }).detach();
-      SessionRequest own = request(file);
-      own.clock = realtime::ClockKind::kReal;
-      own.ticks = &ticks;
-      run_session(own);
-      ::_exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
+    return test::session_request(experiment_, file, 7);
   }
   /// Trial, level and answer of every completed pass.
   static std::vector<std::tuple<int, double, double>> answers_of(
@@ -242,7 +209,7 @@ TEST_F(OwnShapeTest, ASessionWithThemIsResumedAndAnalysed) {
   run_session(request(folder_ / "whole.h5"));
   const auto whole = answers_of(record::SessionReader(folder_ / "whole.h5"));
   ASSERT_EQ(whole.size(), static_cast<std::size_t>(kTrials));
-  run_and_kill(sessions / "S01.h5", 2500);
+  test::run_and_kill(request(sessions / "S01.h5"), 2500);
   SessionRequest again = request(sessions / "S01.h5");
   again.clock = realtime::ClockKind::kReal;
   again.resume = true;

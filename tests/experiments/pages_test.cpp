@@ -11,23 +11,20 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "core/questions/choice_kind.h"
-#include "core/questions/consent_kind.h"
-#include "core/questions/number_kind.h"
-#include "core/questions/scale_kind.h"
-#include "core/questions/words_kind.h"
+#include "core/questions/question_kinds.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 #include "experiments/control/session_control.h"
 #include "experiments/runner/page_input.h"
 #include "experiments/runner/session.h"
-#include "experiments/runner/virtual_answers.h"
+#include "experiments/runner/session_pages.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 #include "protocols/definition/languages.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments {
@@ -76,14 +73,9 @@ fs::path write_definition(const fs::path& folder, const std::string& pages = kPa
 }
 
 SessionRequest request_for(const Experiment& experiment, const fs::path& file) {
-  SessionRequest request;
-  request.protocol = &experiment.study->protocol();
-  request.definition = experiment.definition.get();
+  SessionRequest request = test::session_request(experiment, file, 7);
   request.definition_folder = file.parent_path();
-  request.subject = "S01";
-  request.seed = 7;
   request.max_trials = 2;
-  request.file = file;
   return request;
 }
 

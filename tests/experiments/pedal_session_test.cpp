@@ -17,6 +17,7 @@
 #include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/event_records.h"
 #include "tests/support/felt_or_not.h"
@@ -86,14 +87,9 @@ class LivePedalTest : public testing::Test {
     replace("until = { time = 0.6 }", "until = { time = 0.3 }");
     test::write_text(folder_ / "study.toml", text);
     experiment_ = load_experiment(folder_ / "study.toml");
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
+    SessionRequest request = test::session_request(experiment_, folder_ / "S01.h5", 7);
     request.clock = realtime::ClockKind::kReal;
     request.device = {"mouse", "", 0};
-    request.file = folder_ / "S01.h5";
     return run_session(request);
   }
   test::TemporaryFolder folder_;

@@ -89,14 +89,8 @@ class RealAnatomyTest : public testing::TestWithParam<RealEar> {
   template <class Visit>
   void each_voxel(const Visit& visit) const {
     const geometry::VoxelGrid& g = model().grid;
-    std::size_t at = 0;
-    for (int k = 0; k < g.size[2]; ++k) {
-      for (int j = 0; j < g.size[1]; ++j) {
-        for (int i = 0; i < g.size[0]; ++i, ++at) {
-          visit(g.centre(i, j, k), at);
-        }
-      }
-    }
+    geometry::visit_voxels(
+        g, [&](const bone::Voxel& voxel, std::size_t at) { visit(g.centre(voxel), at); });
   }
 
   test::TemporaryFolder folder_;

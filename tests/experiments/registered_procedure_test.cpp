@@ -3,14 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <csignal>
-#include <thread>
 
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
@@ -22,6 +17,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -80,13 +76,7 @@ class RegisteredProcedureTest : public testing::Test {
     return load_experiment(folder_ / "pull.toml");
   }
   SessionRequest request_for(const Experiment& experiment, const std::string& name) const {
-    SessionRequest request;
-    request.protocol = &experiment.study->protocol();
-    request.definition = experiment.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
-    request.file = folder_ / name;
-    return request;
+    return test::session_request(experiment, folder_ / name, 7);
   }
   test::TemporaryFolder folder_;
 };
@@ -207,25 +197,7 @@ TEST_F(RegisteredProcedureTest, LiveAndKilledItGoesOnAsItWouldHave) {
   const Experiment experiment = load(kDefinition);
   run_session(request_for(experiment, "whole.h5"));
   const Done whole = done_of(record::SessionReader(folder_ / "whole.h5"));
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    std::atomic<std::uint64_t> ticks{0};
-    std::thread([&] {
-      while (ticks.load() < 2000) {
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-      }
-      ::kill(::getpid(), SIGKILL);
-    }).detach();
-    SessionRequest request = request_for(experiment, "killed.h5");
-    request.clock = realtime::ClockKind::kReal;
-    request.ticks = &ticks;
-    run_session(request);
-    ::_exit(0);
-  }
-  int status = 0;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
+  test::run_and_kill(request_for(experiment, "killed.h5"), 2000);
   const Done kept = done_of(record::SessionReader((folder_ / "killed.h5").string() + ".partial"));
   EXPECT_GE(kept.asked.size(), 2u);
   EXPECT_LT(kept.asked.size(), whole.asked.size());

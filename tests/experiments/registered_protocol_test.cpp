@@ -5,7 +5,6 @@
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,6 +28,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "tests/experiments/console_client.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/stand_in_lsl.h"
@@ -49,12 +49,7 @@ const Experiment& experiment() {
 }
 
 SessionRequest request_for(const std::filesystem::path& file) {
-  SessionRequest request;
-  request.protocol = &experiment().study->protocol();
-  request.definition = experiment().definition.get();
-  request.subject = "S01";
-  request.seed = 7;
-  request.file = file;
+  SessionRequest request = test::session_request(experiment(), file, 7);
   request.live = [](const std::filesystem::path& resumed) {
     return experiment().study->live_figures(*experiment().definition, resumed);
   };
@@ -183,27 +178,6 @@ class KilledTest : public testing::Test {
     request.clock = clock;
     return request;
   }
-  /// Runs a session in a process of its own, which is killed once it has done so many ticks.
-  void run_and_kill(const std::string& name, std::uint64_t at_tick) const {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      std::atomic<std::uint64_t> ticks{0};
-      std::thread([&] {
-        while (ticks.load() < at_tick) {
-          std::this_thread::sleep_for(std::chrono::microseconds(200));
-        }
-        ::kill(::getpid(), SIGKILL);
-      }).detach();
-      SessionRequest request = short_request(name, realtime::ClockKind::kReal);
-      request.ticks = &ticks;
-      run_session(request);
-      ::_exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
-  }
   test::TemporaryFolder folder_;
   Experiment short_;
 };
@@ -217,7 +191,7 @@ TEST_F(KilledTest, ResumedItGoesOnAsItWouldHave) {
   ASSERT_EQ(whole.responses().size(), 14u);
   for (const std::uint64_t at : {2500u, 4321u}) {
     const std::string name = "killed" + std::to_string(at) + ".h5";
-    run_and_kill(name, at);
+    test::run_and_kill(short_request(name, realtime::ClockKind::kReal), at);
     const std::size_t kept =
         record::SessionReader((folder_ / name).string() + ".partial").responses().size();
     EXPECT_GE(kept, 2u);

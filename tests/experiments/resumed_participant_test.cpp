@@ -3,14 +3,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <csignal>
-#include <thread>
 
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
@@ -21,6 +17,7 @@
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/replaced.h"
 #include "tests/support/sanitizer.h"
@@ -43,35 +40,10 @@ class ResumedParticipantTest : public testing::Test {
     experiment_ = load_experiment(folder_ / "study.toml");
   }
   SessionRequest request(const std::string& name, realtime::ClockKind clock, int trials) const {
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = "S01";
-    request.seed = 7;
+    SessionRequest request = test::session_request(experiment_, folder_ / name, 7);
     request.max_trials = trials;
-    request.file = folder_ / name;
     request.clock = clock;
     return request;
-  }
-  void kill_at(const std::string& name, int trials, std::uint64_t at_tick) const {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      std::atomic<std::uint64_t> ticks{0};
-      std::thread([&] {
-        while (ticks.load() < at_tick) {
-          std::this_thread::sleep_for(std::chrono::microseconds(200));
-        }
-        ::kill(::getpid(), SIGKILL);
-      }).detach();
-      SessionRequest own = request(name, realtime::ClockKind::kReal, trials);
-      own.ticks = &ticks;
-      run_session(own);
-      ::_exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
   }
   void resume(const std::string& name, int trials) const {
     SessionRequest own = request(name, realtime::ClockKind::kReal, trials);
@@ -137,7 +109,7 @@ TEST_F(ResumedParticipantTest, TheAnswerBeforeCounts) {
   bool telling = false;
   for (std::uint64_t at = 1500; at < 6000 && !telling; at += 700) {  // a loaded machine is late
     const std::string name = "killed" + std::to_string(at) + ".h5";
-    kill_at(name, kTrials, at);
+    test::run_and_kill(request(name, realtime::ClockKind::kReal, kTrials), at);
     const auto before = answers_of(record::SessionReader(folder_ / (name + ".partial")));
     // A participant who has forgotten the answer "first" would give it again.
     telling = !before.empty() && before.back() == 1.0;
@@ -150,7 +122,7 @@ TEST_F(ResumedParticipantTest, TheAnswerBeforeCounts) {
 TEST_F(ResumedParticipantTest, AnAnswerWhosePassIsLostIsGivenAgain) {
   constexpr int kTrials = 4;
   use(kAlternates);
-  kill_at("killed.h5", kTrials, 1500);
+  test::run_and_kill(request("killed.h5", realtime::ClockKind::kReal, kTrials), 1500);
   {  // what a kill leaves between an answer and the samples of its pass
     record::Resumed found;
     auto writer = record::SessionWriter::resume(folder_ / "killed.h5", found, known_tables());
@@ -168,7 +140,7 @@ TEST_F(ResumedParticipantTest, AnAnswerWhosePassIsLostIsGivenAgain) {
 
 TEST_F(ResumedParticipantTest, TheOrderOfAnotherParticipantIsRefused) {
   use(kAlternates);
-  kill_at("killed.h5", 4, 1500);
+  test::run_and_kill(request("killed.h5", realtime::ClockKind::kReal, 4), 1500);
   SessionRequest other = request("killed.h5", realtime::ClockKind::kReal, 4);
   other.resume = true;
   other.participant = 2;
@@ -202,7 +174,7 @@ TEST_F(ResumedParticipantTest, WhatWasLearntOfTheCurlFieldIsKept) {
   constexpr int kTrials = 9;
   use(short_curl_field());
   run_session(request("whole.h5", realtime::ClockKind::kSimulated, kTrials));
-  kill_at("killed.h5", kTrials, 6000);
+  test::run_and_kill(request("killed.h5", realtime::ClockKind::kReal, kTrials), 6000);
   const auto before =
       record::SessionReader(folder_ / "killed.h5.partial").rows<record::AdaptationRow>();
   ASSERT_GE(before.size(), 3u);

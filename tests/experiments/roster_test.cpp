@@ -22,6 +22,7 @@
 #include "experiments/study/session_name.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -66,31 +67,23 @@ class RosterTest : public testing::Test {
   /// @param number  of the participant; 0: that of the identifier
   void record(const std::string& subject, int session, bool pilot = false, std::uint64_t seed = 1,
               int number = 0) const {
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = subject;
+    SessionRequest request = test::session_request(
+        experiment_, sessions_ / session_file_name(subject, session, 2), seed, subject);
     request.participant = (number > 0 ? number : number_of_subject(subject)) - 1;
     request.session = session;
-    request.seed = seed;
     request.pilot = pilot;
-    request.file = sessions_ / session_file_name(subject, session, 2);
     run_session(request);
   }
   /// A session whose participant answers every question with its second choice.
   void decline(const std::string& subject) const {
     SessionControl control;
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = subject;
+    SessionRequest request = test::session_request(
+        experiment_, sessions_ / session_file_name(subject, 1, 2), 1, subject);
     request.participant = number_of_subject(subject) - 1;
     request.session = 1;
-    request.seed = 1;
     request.control = &control;
     request.clock = realtime::ClockKind::kReal;
     request.device = {"virtual", "", 0};
-    request.file = sessions_ / session_file_name(subject, 1, 2);
     std::atomic<bool> done{false};
     std::thread person([&] {
       for (int answered = 0; !done; std::this_thread::sleep_for(std::chrono::milliseconds(2))) {

@@ -12,6 +12,7 @@
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -41,14 +42,11 @@ class RoundTripTest : public testing::Test {
   fs::path run(const std::string& folder, const DeviceChoice& device,
                realtime::ClockKind clock = realtime::ClockKind::kReal) {
     fs::create_directories(folder_ / folder);
-    SessionRequest request;
-    request.protocol = &protocols::force_training();
-    request.definition = &definition_;
-    request.subject = "P01";
+    SessionRequest request = test::session_request(protocols::force_training(), definition_,
+                                                   folder_ / folder / "P01.h5", 0, "P01");
     request.clock = clock;
     request.max_trials = 1;
     request.device = device;
-    request.file = folder_ / folder / "P01.h5";
     run_session(request);
     return request.file;
   }

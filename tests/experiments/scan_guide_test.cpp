@@ -15,8 +15,8 @@
 
 #include "core/bone/data/bone_summary.h"
 #include "core/bone/data/load_bone.h"
-#include "core/bone/data/temporal_bone.h"
-#include "core/bone/record/drilling_types.h"
+#include "core/bone/data/procedural_bone.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/bone/surface/surface_mesh.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/record/read/session_reader.h"

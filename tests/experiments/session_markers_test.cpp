@@ -25,6 +25,7 @@
 #include "core/sound/cue.h"
 #include "experiments/runner/session.h"
 #include "protocols/psychophysics/trials_protocol.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/support/pseudo_terminal.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -116,13 +117,9 @@ class SessionMarkersTest : public testing::Test {
     definition_ = protocols::trials_protocol().read(root, "marked.toml", nullptr);
     protocols::check_markers(root, *definition_);
     root.finish();
-    SessionRequest request;
-    request.protocol = &protocols::trials_protocol();
-    request.definition = definition_.get();
-    request.subject = "S01";
-    request.seed = 7;
+    SessionRequest request =
+        test::session_request(protocols::trials_protocol(), *definition_, folder_ / "S01.h5", 7);
     request.clock = clock;
-    request.file = folder_ / "S01.h5";
     return request;
   }
   SessionRequest live(const std::string& more) { return request(more, realtime::ClockKind::kReal); }

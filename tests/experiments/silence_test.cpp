@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/response.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"

@@ -44,6 +44,16 @@ bone::BoneModel two_slabs() {
   return model;
 }
 
+bone::BoneModel slabs_over_dura() {
+  bone::BoneModel model = two_slabs();
+  for (std::size_t at = 0; at < model.labels.size(); ++at) {
+    const int j = model.grid.voxel(at).y();
+    model.labels[at] = j < 7 ? 2 : j >= 10 ? 1 : 0;
+  }
+  model.structures[2] = {"sigmoid sinus and dura", {0.32, 0.38, 0.75}, 0.25, true};
+  return model;
+}
+
 std::filesystem::path write_small_drilling(
     const std::filesystem::path& folder, double seconds,
     const std::vector<std::pair<std::string, std::string>>& more) {

@@ -17,6 +17,8 @@ std::string drilling_with(const std::vector<std::pair<std::string, std::string>>
 /// Two slabs of bone, one over the other, held together by four posts of which a virtual hand
 /// drills through: 32 x 12 x 20 voxels of 1 mm. A nerve runs in the lower one.
 bone::BoneModel two_slabs();
+/// The same with the upper slab of bone over dura.
+bone::BoneModel slabs_over_dura();
 
 /// A folder with that bone (slabs.nrrd) and a definition (study.toml) of so many seconds on it.
 /// @param more  lines to replace

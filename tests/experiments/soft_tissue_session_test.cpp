@@ -8,8 +8,8 @@
 
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "core/bone/data/bone_file.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/tear_row.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
@@ -18,6 +18,7 @@
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/load_bones.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -30,21 +31,10 @@ using testing::HasSubstr;
 constexpr double kSeconds = 10.0;
 constexpr double kTearsAt = 1.5;  // [N]; the hand presses with 2.5
 
-/// The upper slab of bone over dura.
-bone::BoneModel over_dura() {
-  bone::BoneModel model = test::two_slabs();
-  for (std::size_t at = 0; at < model.labels.size(); ++at) {
-    const std::size_t j = at / 32 % 12;
-    model.labels[at] = j < 7 ? 2 : j >= 10 ? 1 : 0;
-  }
-  model.structures[2] = {"sigmoid sinus and dura", {0.32, 0.38, 0.75}, 0.25, true};
-  return model;
-}
-
 std::filesystem::path definition_in(const std::filesystem::path& folder, const char* soft) {
   const auto file =
       test::write_small_drilling(folder, kSeconds, {{"bones", "bones = [\"dura.nrrd\"]"}});
-  bone::save_bone(folder / "dura.nrrd", over_dura());
+  bone::save_bone(folder / "dura.nrrd", test::slabs_over_dura());
   std::ofstream(file, std::ios::app) << "\n" << soft;
   return file;
 }
@@ -58,12 +48,8 @@ class SoftTissueSessionTest : public testing::Test {
     folder_ = std::make_unique<test::TemporaryFolder>();
     definition_ = std::make_unique<protocols::BoneDefinition>(
         protocols::load_bone_definition(definition_in(folder_->path(), kDura)));
-    SessionRequest request;
-    request.protocol = &protocols::bone_drilling();
-    request.definition = definition_.get();
-    request.subject = "S01";
-    request.seed = 3;
-    request.file = *folder_ / "S01.h5";
+    SessionRequest request =
+        test::session_request(protocols::bone_drilling(), *definition_, *folder_ / "S01.h5", 3);
     run_session(request);
   }
   static void TearDownTestSuite() {

@@ -13,7 +13,7 @@
 
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/taken_back_row.h"
+#include "core/record/rows/trial_facts.h"
 #include "core/record/rows/trial_rows.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"

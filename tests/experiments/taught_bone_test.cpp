@@ -12,16 +12,14 @@
 #include <vector>
 
 #include "core/bone/data/bone_file.h"
-#include "core/bone/record/burr_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/led_row.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/bone/simulator/bone_touch.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/link_row.h"
-#include "core/record/table/rounding.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -187,17 +185,6 @@ TEST_F(TaughtBoneTest, AReplayOfTheLedSessionFeelsItsHandpiece) {
   EXPECT_THAT(protocols::BoneReplay(pushed).run(1).difference, HasSubstr("on the burr's shaft"));
 }
 
-/// The upper slab of bone over dura.
-bone::BoneModel over_dura() {
-  bone::BoneModel model = test::two_slabs();
-  for (std::size_t at = 0; at < model.labels.size(); ++at) {
-    const std::size_t j = at / 32 % 12;
-    model.labels[at] = j < 7 ? 2 : j >= 10 ? 1 : 0;
-  }
-  model.structures[2] = {"sigmoid sinus and dura", {0.32, 0.38, 0.75}, 0.25, true};
-  return model;
-}
-
 /// Forces on a hand from a bone that it did not drill itself follow from the bone that the replay
 /// makes: to the last bit of the file.
 TEST_F(TaughtBoneTest, WhatTheLedHandFeltFollowsFromTheFile) {
@@ -205,7 +192,7 @@ TEST_F(TaughtBoneTest, WhatTheLedHandFeltFollowsFromTheFile) {
       definition("authority = 0.5\n", 8.0, {{"bones", "bones = [\"dura.nrrd\"]"}});
   test::write_text(study, test::read_text(study) +
                               "\n[soft_tissue.dura]\nstructure = \"dura\"\nstiffness = 500.0\n");
-  bone::save_bone(folder_ / "dura.nrrd", over_dura());
+  bone::save_bone(folder_ / "dura.nrrd", test::slabs_over_dura());
   const record::SessionReader reader(taught(study, "out") + "/S01.h5");
   const auto samples = reader.samples(0, reader.sample_count());
   const auto tool = reader.rows<record::ToolRow>();

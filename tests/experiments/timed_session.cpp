@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "core/record/hdf5/session_writer.h"
-#include "protocols/force_training/recall.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "protocols/force_training/virtual_rig.h"
 #include "protocols/interface/session_task.h"
 #include "tests/experiments/shipped.h"
@@ -46,10 +46,11 @@ TimedSession run_timed_session(std::uint64_t ticks, const std::filesystem::path&
     loop.run(counted);
     over = true;
   });
-  std::unique_ptr<protocols::RecallTest> pass;
+  std::unique_ptr<protocols::TrajectoryPass> pass;
   while (!over) {
     if (task.idle()) {
-      pass = std::make_unique<protocols::RecallTest>(stimulus, definition.guidance, 1);
+      pass = std::make_unique<protocols::TrajectoryPass>(protocols::kRecallTest, stimulus,
+                                                         definition.guidance, 1);
       task.start(*pass, 0);
     }
     log.drain(append);

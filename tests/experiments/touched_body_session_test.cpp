@@ -13,12 +13,13 @@
 #include "core/deformable/touch/ball_touch.h"
 #include "core/deformable/touch/prepared.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/contact_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::experiments::touched_body_session_test {
@@ -41,13 +42,8 @@ fs::path with_contacts(const fs::path& folder) {
 }
 
 void run(const Experiment& experiment, const fs::path& file) {
-  SessionRequest request;
-  request.protocol = &experiment.study->protocol();
-  request.definition = experiment.definition.get();
-  request.subject = "S01";
-  request.seed = 11;
+  SessionRequest request = test::session_request(experiment, file, 11);
   request.max_trials = 2;
-  request.file = file;
   run_session(request);
 }
 

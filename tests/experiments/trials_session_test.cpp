@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -23,7 +22,7 @@
 #include "core/psychometric/procedure/procedure.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "experiments/control/live_status.h"
 #include "experiments/runner/session.h"
@@ -34,6 +33,7 @@
 #include "protocols/psychophysics/trials_protocol.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -49,13 +49,8 @@ fs::path shipped(const std::string& name) {
 }
 
 SessionRequest request_for(const Experiment& experiment, const fs::path& file, int trials = 0) {
-  SessionRequest request;
-  request.protocol = &experiment.study->protocol();
-  request.definition = experiment.definition.get();
-  request.subject = "S01";
-  request.seed = 7;
+  SessionRequest request = test::session_request(experiment, file, 7);
   request.max_trials = trials;
-  request.file = file;
   return request;
 }
 
@@ -212,26 +207,6 @@ class KilledTrialsTest : public testing::Test {
     request.clock = clock;
     return request;
   }
-  void run_and_kill(const std::string& name, std::uint64_t at_tick) const {
-    const pid_t child = fork();
-    ASSERT_GE(child, 0);
-    if (child == 0) {
-      std::atomic<std::uint64_t> ticks{0};
-      std::thread([&] {
-        while (ticks.load() < at_tick) {
-          std::this_thread::sleep_for(std::chrono::microseconds(200));
-        }
-        ::kill(::getpid(), SIGKILL);
-      }).detach();
-      SessionRequest request = short_request(name, realtime::ClockKind::kReal);
-      request.ticks = &ticks;
-      run_session(request);
-      ::_exit(0);
-    }
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it came to its end before it was killed";
-  }
   struct Done {
     std::vector<double> asked, outcomes, answers;
     bool operator==(const Done&) const = default;
@@ -269,7 +244,7 @@ TEST_F(KilledTrialsTest, TheStaircaseGoesOnAsItWouldHave) {
   ASSERT_EQ(whole.asked.size(), 8u);
   for (const std::uint64_t at : {6000u, 9500u}) {
     const std::string name = "killed" + std::to_string(at) + ".h5";
-    run_and_kill(name, at);
+    test::run_and_kill(short_request(name, realtime::ClockKind::kReal), at);
     SessionRequest request = short_request(name, realtime::ClockKind::kReal);
     request.resume = true;
     run_session(request);

@@ -13,10 +13,9 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/tuning_row.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 #include "experiments/console/console.h"
 #include "experiments/runner/session.h"
@@ -26,6 +25,7 @@
 #include "protocols/bone_drilling/tuning_page.h"
 #include "tests/experiments/browser.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
@@ -49,13 +49,8 @@ void ask(protocols::TuningPage& page, const std::string& key, double value) {
 /// A pilot of a virtual hand on the simulated clock. @returns its file
 fs::path run_pilot(const protocols::BoneDefinition& definition, const fs::path& file,
                    const std::shared_ptr<protocols::TuningPage>& page) {
-  SessionRequest request;
-  request.protocol = &protocols::bone_drilling();
-  request.definition = &definition;
-  request.subject = "S01";
-  request.seed = 3;
+  SessionRequest request = test::session_request(protocols::bone_drilling(), definition, file, 3);
   request.pilot = true;
-  request.file = file;
   request.auxiliary_pages = {page};
   run_session(request);
   return file;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/tutoring_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/tutoring/deadband.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"

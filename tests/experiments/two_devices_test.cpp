@@ -18,13 +18,14 @@
 #include "core/device/registered_devices.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "experiments/runner/devices.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/roster.h"
 #include "protocols/interface/protocol.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -188,11 +189,7 @@ class TwoDevicesTest : public testing::Test {
   }
   record::SessionReader run(const Trouble& trouble = {}) {
     protocol_.rig = std::make_unique<Pair>(trouble, second_limits_);
-    SessionRequest request;
-    request.protocol = &protocol_;
-    request.definition = &definition_;
-    request.subject = "S01";
-    request.file = folder_ / "S01.h5";
+    SessionRequest request = test::session_request(protocol_, definition_, folder_ / "S01.h5", 0);
     run_session(request);
     return record::SessionReader(request.file);
   }
@@ -352,15 +349,11 @@ class TwoDevicesStudyTest : public testing::Test {
          }});
   }
   void record(const std::string& subject, std::vector<DeviceChoice> more) const {
-    SessionRequest request;
-    request.protocol = &experiment_.study->protocol();
-    request.definition = experiment_.definition.get();
-    request.subject = subject;
+    SessionRequest request =
+        test::session_request(experiment_, folder_ / "out" / (subject + ".h5"), 1, subject);
     request.participant = subject.back() - '1';
-    request.seed = 1;
     request.device = {"circling", "", 0};
     request.more_devices = std::move(more);
-    request.file = folder_ / "out" / (subject + ".h5");
     std::filesystem::create_directory(folder_ / "out");
     run_session(request);
   }

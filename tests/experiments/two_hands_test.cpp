@@ -9,14 +9,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/field_row.h"
 #include "core/bone/record/recorded_bone.h"
-#include "core/bone/record/second_hand_row.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/live_command.h"

@@ -39,9 +39,7 @@ bone::SimulatorParameters workshop(const bone::BoneModel& model) {
   cut.width = cut.height = 0.02;
   p.tools = {burr, suction, plane};
   const geometry::VoxelGrid& grid = model.grid;
-  p.pose_WB.translation() =
-      -0.5 *
-      (grid.centre(0, 0, 0) + grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1));
+  p.pose_WB.translation() = -0.5 * (grid.centre(0, 0, 0) + grid.centre(grid.last()));
   return p;
 }
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "protocols/force_training/recall.h"
 #include "protocols/force_training/training_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/pass_run.h"
 
 namespace haptrial::protocols {
@@ -28,7 +28,7 @@ TEST(EveryHandTest, APassIsQuietWithEveryHandOnEveryLoop) {
   for (const Loop& loop : loops()) {
     for (const double mass : {0.001, 0.1, 0.3, 0.5, 0.8, 2.0}) {
       SCOPED_TRACE(testing::Message() << mass << " kg, " << loop.rate << " Hz, " << loop.delay);
-      RecallTest pass(stimulus, GuidanceParameters{}, 1);
+      TrajectoryPass pass(kRecallTest, stimulus, GuidanceParameters{}, 1);
       PassRun run(pass, loop, mass);
       double at_limit = run.advance_to(record::Stage::kRun);
       ASSERT_EQ(run.stage, record::Stage::kRun) << device::describe(run.fault());
@@ -67,7 +67,7 @@ TEST(EveryHandTest, NoForceIsBeyondTheLimitOfGuidance) {
   GuidanceParameters guidance;
   guidance.force_limit = 2.0;
   for (const double mass : {0.001, 0.05}) {
-    RecallTest pass(stimulus, guidance, 1);
+    TrajectoryPass pass(kRecallTest, stimulus, guidance, 1);
     PassRun run(pass, {1000.0, 3}, mass);
     double most = 0.0;
     for (int i = 0; i < 8000 && !run.idle(); ++i) {

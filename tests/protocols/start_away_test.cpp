@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "core/base/random.h"
-#include "core/device/coupled_mass.h"
+#include "core/device/handle_physics.h"
 #include "core/device/virtual_device.h"
-#include "protocols/force_training/recall.h"
 #include "protocols/force_training/training_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "protocols/interface/session_task.h"
 
 namespace haptrial::protocols {
@@ -62,7 +62,7 @@ TEST(StartAwayTest, NeverJerksWhereverTheHandIs) {
   for (int round = 0; round < 40; ++round) {
     const Vector3d away{random.uniform(-0.04, 0.04), random.uniform(-0.04, 0.04),
                         random.uniform(-0.04, 0.04)};
-    RecallTest recall(stimulus, {}, 1);
+    TrajectoryPass recall(kRecallTest, stimulus, {}, 1);
     const auto training = make_training_pass(
         training_conditions()[random.below(training_conditions().size())], stimulus, {}, 1);
     for (Pass* pass : {static_cast<Pass*>(training.get()), static_cast<Pass*>(&recall)}) {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "analysis/bone_drilling/metrics/in_order.h"
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -30,15 +30,11 @@ std::vector<std::uint8_t> labels_left(const Procedure& procedure) {
   visit_in_order(procedure, visitor);
   std::vector<std::uint8_t> labels = procedure.bone->labels;
   const geometry::VoxelGrid& grid = procedure.bone->grid;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        if (!visitor.bone.holds({i, j, k})) {
-          labels[grid.index(i, j, k)] = 0;
-        }
-      }
+  geometry::visit_voxels(grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (!visitor.bone.holds(voxel)) {
+      labels[at] = 0;
     }
-  }
+  });
   return labels;
 }
 

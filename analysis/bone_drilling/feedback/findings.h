@@ -7,7 +7,7 @@
 
 #include "analysis/bone_drilling/feedback/safe_values.h"
 #include "analysis/bone_drilling/metrics/metrics.h"
-#include "core/bone/drill/standing_bone.h"
+#include "core/bone/drill/sight.h"
 
 namespace haptrial::analysis::drilling {
 

@@ -8,7 +8,6 @@
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/phase_tables.h"
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
-#include "analysis/document/base64.h"
 #include "analysis/document/html.h"
 
 namespace haptrial::analysis::drilling {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

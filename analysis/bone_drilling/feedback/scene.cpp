@@ -5,17 +5,21 @@
 #include <numeric>
 
 #include "analysis/bone_drilling/feedback/scene_mesh.h"
-#include "analysis/document/base64.h"
+#include "analysis/document/html.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
 
 using nlohmann::json;
 
+constexpr std::size_t kBoneTriangles = 50000;  // at most, so that two bones are below 5 MB
+constexpr std::size_t kStructureTriangles = 3000;
+constexpr std::size_t kPlanned = 20000;   // places of planned bone that is left, evenly chosen
+constexpr std::size_t kRemovals = 60000;  // that are drawn, each with an equal share; faults first
+
 class Scene {
  public:
-  Scene(const Findings& findings, const SceneOptions& options)
-      : f_(findings), options_(options), left_(*findings.summary.bone) {
+  explicit Scene(const Findings& findings) : f_(findings), left_(*findings.summary.bone) {
     left_.labels = f_.labels_left;
     left_.density.clear();
     Eigen::AlignedBox3d box;
@@ -44,7 +48,7 @@ class Scene {
     scene["up"] = numbers(view.up.normalized());
     scene["edge"] = 1e3 * left_.grid.spacing;
     add_focus(scene);
-    scene["bone"] = mesh(scene_surface(left_, options_.bone_triangles));
+    scene["bone"] = mesh(scene_surface(left_, kBoneTriangles));
     scene["colours"] = json::array();
     for (const bone::Structure& structure : left_.structures) {
       scene["colours"].push_back(structure.colour);
@@ -57,9 +61,7 @@ class Scene {
   }
 
  private:
-  Eigen::Vector3d place(const bone::Voxel& v) const {
-    return f_.pose_WB * left_.grid.centre(v.x(), v.y(), v.z());
-  }
+  Eigen::Vector3d place(const bone::Voxel& v) const { return f_.pose_WB * left_.grid.centre(v); }
 
   /// The removed bone, or all of it where nothing was removed.
   void add_focus(json& scene) const {
@@ -68,9 +70,8 @@ class Scene {
       box.extend(place(voxel));
     }
     if (box.isEmpty()) {
-      const auto& size = left_.grid.size;
       box.extend(place(bone::Voxel::Zero()));
-      box.extend(place({size[0] - 1, size[1] - 1, size[2] - 1}));
+      box.extend(place(left_.grid.last()));
     }
     const Eigen::Vector3d middle = 1e3 * box.center();
     scene["focus"] = {middle.x(), middle.y(), middle.z()};
@@ -100,7 +101,7 @@ class Scene {
       for (std::size_t label = 1; label < wanted.size(); ++label) {
         wanted[label] = left_.structures[label].name == name;
       }
-      json structure = mesh(scene_structure(left_, wanted, options_.structure_triangles));
+      json structure = mesh(scene_structure(left_, wanted, kStructureTriangles));
       structure["name"] = name;
       scene["structures"].push_back(std::move(structure));
     }
@@ -109,21 +110,21 @@ class Scene {
   void add_removals(json& scene) const {
     std::vector<std::size_t> order(f_.voxels.size());
     std::iota(order.begin(), order.end(), 0);
-    if (order.size() > options_.removals) {
+    if (order.size() > kRemovals) {
       std::stable_partition(order.begin(), order.end(),
                             [this](std::size_t n) { return f_.faults[n] != 0; });
-      const std::size_t faults = std::min(f_.count(0xFF), options_.removals);
-      const std::size_t others = options_.removals - faults;
+      const std::size_t faults = std::min(f_.count(0xFF), kRemovals);
+      const std::size_t others = kRemovals - faults;
       for (std::size_t n = 0; n < others; ++n) {  // an even choice of the good ones
         order[faults + n] = order[faults + n * (order.size() - faults) / others];
       }
-      order.resize(options_.removals);
+      order.resize(kRemovals);
     }
     std::string places, faults, parts;
     for (const std::size_t n : order) {
       if (f_.plan) {
         const bone::Voxel& v = f_.voxels[n];
-        parts += static_cast<char>(f_.plan->parts[left_.grid.index(v.x(), v.y(), v.z())]);
+        parts += static_cast<char>(f_.plan->parts[left_.grid.index(v)]);
       }
       grid_.add(place(f_.voxels[n]), places);
       faults += static_cast<char>(f_.faults[n]);
@@ -140,17 +141,12 @@ class Scene {
       return;
     }
     std::vector<bone::Voxel> left;
-    std::size_t at = 0;
-    for (int k = 0; k < left_.grid.size[2]; ++k) {
-      for (int j = 0; j < left_.grid.size[1]; ++j) {
-        for (int i = 0; i < left_.grid.size[0]; ++i, ++at) {
-          if (f_.plan->parts[at] == subject::PlanPart::kPlanned && left_.labels[at] != 0) {
-            left.emplace_back(i, j, k);
-          }
-        }
+    geometry::visit_voxels(left_.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+      if (f_.plan->parts[at] == subject::PlanPart::kPlanned && left_.labels[at] != 0) {
+        left.push_back(voxel);
       }
-    }
-    const std::size_t shown = std::min(left.size(), options_.planned);
+    });
+    const std::size_t shown = std::min(left.size(), kPlanned);
     std::string places;
     for (std::size_t n = 0; n < shown; ++n) {
       grid_.add(place(left[n * left.size() / shown]), places);
@@ -177,18 +173,15 @@ class Scene {
   }
 
   const Findings& f_;
-  const SceneOptions& options_;
   bone::BoneModel left_;
   SceneGrid grid_;
 };
 
 }  // namespace
 
-std::string scene_json(const Findings& findings, const FirstView& view,
-                       const SceneOptions& options) {
-  std::string text = Scene(findings, options)
-                         .made(view)
-                         .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+std::string scene_json(const Findings& findings, const FirstView& view) {
+  std::string text =
+      Scene(findings).made(view).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos; at += 6) {
     text.replace(at, 1, "\\u003c");
   }

@@ -13,18 +13,10 @@ struct FirstView {
   Eigen::Vector3d up{Eigen::Vector3d::UnitY()};           // in the picture, not along it
 };
 
-struct SceneOptions {
-  std::size_t bone_triangles{50000};  // at most, so that a page with two bones is below 5 MB
-  std::size_t structure_triangles{3000};
-  std::size_t planned{20000};   // places of planned bone that is left, evenly chosen
-  std::size_t removals{60000};  // that are drawn, each with an equal share of all; faults first
-};
-
 /// A bone after a procedure as a JSON object for view.html: its surface, vital structures, removals
 /// with what was wrong with them and what the plan says of them, planned bone that is left, paths
 /// of strokes, all in W as 16-bit numbers in base64. No
 /// character of it ends a script.
-std::string scene_json(const Findings& findings, const FirstView& view,
-                       const SceneOptions& options = {});
+std::string scene_json(const Findings& findings, const FirstView& view);
 
 }  // namespace haptrial::analysis::drilling

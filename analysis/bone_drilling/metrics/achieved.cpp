@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "analysis/bone_drilling/metrics/study_bones.h"
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -140,11 +140,10 @@ void AchievedMeter::tick(const ToolTick& tick) {
 
 void AchievedMeter::remove(const bone::Voxel& voxel) {
   const geometry::VoxelGrid& grid = bone_->grid;
-  if ((voxel.array() < 0).any() || voxel.x() >= grid.size[0] || voxel.y() >= grid.size[1] ||
-      voxel.z() >= grid.size[2]) {
+  if (!grid.contains(voxel)) {
     return;
   }
-  const std::size_t at = grid.index(voxel.x(), voxel.y(), voxel.z());
+  const std::size_t at = grid.index(voxel);
   if (gone_[at] || bone_->labels[at] == 0) {
     return;
   }

@@ -29,19 +29,14 @@ FragmentMeter::FragmentMeter(std::shared_ptr<const bone::BoneModel> bone,
     : bone_(std::move(bone)), pose_WB_(pose_WB), plan_(plan) {
   const std::vector<bool> teeth = teeth_labels(*bone_);
   const geometry::VoxelGrid& grid = bone_->grid;
-  std::size_t at = 0;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i, ++at) {
-        if (teeth[bone_->labels[at]]) {
-          const Vector3d place = pose_WB_ * grid.centre(i, j, k);
-          if ((place - plan_.point).dot(plan_.normal) > 0.0) {
-            teeth_.push_back(place);
-          }
-        }
+  geometry::visit_voxels(grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (teeth[bone_->labels[at]]) {
+      const Vector3d place = pose_WB_ * grid.centre(voxel);
+      if ((place - plan_.point).dot(plan_.normal) > 0.0) {
+        teeth_.push_back(place);
       }
     }
-  }
+  });
 }
 
 void FragmentMeter::add(const record::PieceRow& row) {
@@ -54,7 +49,7 @@ void FragmentMeter::add(const record::PieceRow& row) {
 void FragmentMeter::add(const record::ScrewRow& row) { screws_[{row.plate, row.hole}] = row; }
 
 void FragmentMeter::remove(const bone::Voxel& voxel) {
-  const Vector3d place = pose_WB_ * bone_->grid.centre(voxel.x(), voxel.y(), voxel.z());
+  const Vector3d place = pose_WB_ * bone_->grid.centre(voxel);
   const double off = (place - plan_.point).dot(plan_.normal);
   off_squares_ += off * off;
   ++removed_;

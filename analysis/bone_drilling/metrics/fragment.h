@@ -10,7 +10,7 @@
 
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/bone_volume.h"
-#include "core/bone/record/fragment_rows.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/subject/drilling/fragment_plan.h"
 
 namespace haptrial::analysis::drilling {

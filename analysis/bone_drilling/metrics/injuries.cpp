@@ -9,7 +9,7 @@
 #include "analysis/bone_drilling/metrics/in_order.h"
 #include "analysis/bone_drilling/metrics/study_bones.h"
 #include "analysis/bone_drilling/metrics/visibility.h"
-#include "core/bone/drill/standing_bone.h"
+#include "core/bone/drill/sight.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -107,7 +107,7 @@ void InjuryMeter::remove(const Removal& removal, double time) {
 
 void InjuryMeter::crumble(const std::vector<bone::Voxel>& voxels) {
   for (const bone::Voxel& voxel : voxels) {
-    const std::uint8_t label = bone_->labels[bone_->grid.index(voxel.x(), voxel.y(), voxel.z())];
+    const std::uint8_t label = bone_->labels[bone_->grid.index(voxel)];
     for (Injury& injury : injuries_) {
       injury.crumbled += injury.label == label ? 1 : 0;
     }

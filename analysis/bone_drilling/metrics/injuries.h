@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/bone_drilling/metrics/burr_on_tick.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
+#include "analysis/bone_drilling/metrics/visibility.h"
 #include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {

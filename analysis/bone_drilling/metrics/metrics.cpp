@@ -142,11 +142,8 @@ void sort_removed(const Procedure& procedure, ProcedureSummary& summary) {
   voxels.reserve(procedure.removals.size());
   for (std::size_t n = 0; n < procedure.removals.size(); ++n) {
     const bone::Voxel& v = procedure.removals[n].voxel;
-    const bool inside = (v.array() >= 0).all() && v.x() < grid.size[0] && v.y() < grid.size[1] &&
-                        v.z() < grid.size[2];
-    if (inside) {
-      voxels.emplace_back(static_cast<std::uint32_t>(grid.index(v.x(), v.y(), v.z())),
-                          summary.visibility.visible[n]);
+    if (grid.contains(v)) {
+      voxels.emplace_back(static_cast<std::uint32_t>(grid.index(v)), summary.visibility.visible[n]);
     }
   }
   std::sort(voxels.begin(), voxels.end());
@@ -349,11 +346,10 @@ std::vector<std::string> quantity_names(const ProcedureSummary& summary) {
 }
 
 std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedures,
-                                            std::span<const std::string> expert_groups,
-                                            const RegionParameters& parameters) {
+                                            std::span<const std::string> expert_groups) {
   std::vector<RegionScores> scores(procedures.size());
   if (const auto regions = regions_of(procedures, expert_groups)) {
-    scores = region_scores(*regions, parameters);
+    scores = region_scores(*regions);
   }
   const std::size_t place = place_of(kRegionMetric);
   for (std::size_t i = 0; i < procedures.size(); ++i) {
@@ -363,13 +359,11 @@ std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedur
 }
 
 std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummary> procedures,
-                                                 std::span<const std::string> expert_groups,
-                                                 const RegionParameters& parameters) {
+                                                 std::span<const std::string> expert_groups) {
   constexpr int kRounds = 999;  // least p: 0.001, which Holm's adjustment leaves below 0.05
   constexpr std::uint64_t kSeed = 1;
   const auto regions = regions_of(procedures, expert_groups);
-  return regions ? region_label_test(*regions, kSeed, kRounds, RegionTerms::kAll, parameters)
-                 : std::nullopt;
+  return regions ? region_label_test(*regions, kSeed, kRounds) : std::nullopt;
 }
 
 std::string metrics_csv(std::span<const ProcedureSummary> procedures) {

@@ -99,15 +99,13 @@ ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& opti
 /// @param expert_groups  names of the groups that are experts; all others are novices
 /// @returns the scores by the other ways of training and counting, for the report
 std::vector<RegionScores> add_region_scores(std::span<ProcedureSummary> procedures,
-                                            std::span<const std::string> expert_groups,
-                                            const RegionParameters& parameters = {});
+                                            std::span<const std::string> expert_groups);
 
 /// Whether experts' "region_log_ratio" is higher than novices', with the labels of participants
 /// permuted (region_likelihood.h): values that share their training need a test of their own.
 /// Nothing where the score is not defined.
 std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummary> procedures,
-                                                 std::span<const std::string> expert_groups,
-                                                 const RegionParameters& parameters = {});
+                                                 std::span<const std::string> expert_groups);
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
 /// and where participants come several times session_number and session_name;

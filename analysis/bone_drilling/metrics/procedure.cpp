@@ -8,15 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "analysis/bone_drilling/metrics/counted_passes.h"
 #include "analysis/bone_drilling/metrics/study_bones.h"
 #include "core/base/error.h"
-#include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
-#include "core/bone/record/tear_row.h"
-#include "core/record/read/check_phases.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 #include "core/subject/drilling/work_row.h"
 
@@ -262,6 +258,23 @@ Removal removal_of(const record::RemovalRow& row) {
 
 View view_of(const record::CameraRow& row) {
   return {row.sequence, row.eye, row.target, row.field_of_view};
+}
+
+std::map<std::int32_t, std::vector<CountedPass>> counted_passes(const record::SessionReader& file) {
+  std::map<std::int32_t, std::vector<CountedPass>> trials;
+  const std::vector<record::PassRow> passes = file.passes();
+  for (std::size_t row = 0; row < passes.size(); ++row) {
+    const record::PassRow& pass = passes[row];
+    if (pass.practice || pass.phase != record::kDrillingPhase) {
+      continue;
+    }
+    std::vector<CountedPass>& own = trials[pass.trial];
+    if (!own.empty() && own.back().pass.repetition < pass.repetition) {
+      own.clear();
+    }
+    own.push_back({row, pass});
+  }
+  return trials;
 }
 
 }  // namespace haptrial::analysis::drilling

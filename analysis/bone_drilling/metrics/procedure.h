@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,9 +13,8 @@
 #include "core/bone/drill/burr_shape.h"
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/bone_volume.h"
-#include "core/bone/record/drilling_types.h"
-#include "core/bone/record/field_row.h"
-#include "core/bone/record/fragment_rows.h"
+#include "core/bone/record/bone_rows.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/record/rows/session_types.h"
 #include "core/subject/drilling/fragment_plan.h"
 
@@ -165,5 +165,15 @@ ToolTick tick_of(const record::Sample& sample, const record::ToolRow& tool, doub
                  const Eigen::Vector3d& handle = Eigen::Vector3d::UnitZ());
 Removal removal_of(const record::RemovalRow& row);
 View view_of(const record::CameraRow& row);
+
+struct CountedPass {
+  std::size_t row;  // of /passes
+  record::PassRow pass;
+};
+
+/// The passes of each trial of a drilling session that count, by trial: those of practice are left
+/// out, and of a drilling that was begun anew on a fresh bone those on earlier bones.
+/// @throws InputError where the file is damaged
+std::map<std::int32_t, std::vector<CountedPass>> counted_passes(const record::SessionReader& file);
 
 }  // namespace haptrial::analysis::drilling

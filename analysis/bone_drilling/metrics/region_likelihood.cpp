@@ -50,10 +50,7 @@ struct Logs {
 
 class Regions {
  public:
-  Regions(std::span<const RemovedRegion> regions, double smoothing) : smoothing_(smoothing) {
-    if (!(smoothing > 0.0) || !std::isfinite(smoothing)) {
-      throw std::invalid_argument("region likelihood: the smoothing must be above 0");
-    }
+  explicit Regions(std::span<const RemovedRegion> regions) {
     std::vector<std::uint32_t> voxels;  // that anyone removed; all others say nothing
     for (const RemovedRegion& region : regions) {
       voxels.insert(voxels.end(), region.voxels.begin(), region.voxels.end());
@@ -205,8 +202,8 @@ class Regions {
       return;
     }
     const double mean = 0.5 * (experts_.procedures + novices_.procedures);
-    const Logs e(experts_.procedures, smoothing_ * experts_.procedures / mean);
-    const Logs n(novices_.procedures, smoothing_ * novices_.procedures / mean);
+    const Logs e(experts_.procedures, experts_.procedures / mean);
+    const Logs n(novices_.procedures, novices_.procedures / mean);
     double all_left = 0.0;
     if (terms == RegionTerms::kAll) {
       for (std::size_t v = 0; v < experts_.counts.size(); ++v) {
@@ -230,7 +227,6 @@ class Regions {
     }
   }
 
-  double smoothing_;
   std::map<std::string, Person> people_;
   std::vector<std::vector<std::uint32_t>> places_;  // (regions) in counts
   Group experts_, novices_;
@@ -239,14 +235,12 @@ class Regions {
 }  // namespace
 
 std::vector<std::optional<double>> region_log_ratios(std::span<const RemovedRegion> regions,
-                                                     RegionTraining training, RegionTerms terms,
-                                                     const RegionParameters& parameters) {
-  return Regions(regions, parameters.smoothing).score(regions, training, terms);
+                                                     RegionTraining training, RegionTerms terms) {
+  return Regions(regions).score(regions, training, terms);
 }
 
-std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
-                                        const RegionParameters& parameters) {
-  Regions all(regions, parameters.smoothing);
+std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions) {
+  Regions all(regions);
   std::vector<RegionScores> scores(regions.size());
   const auto fill = [&](RegionTraining training, RegionTerms terms,
                         std::optional<double> RegionScores::*field) {
@@ -267,12 +261,12 @@ std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
 }
 
 std::optional<RegionLabelTest> region_label_test(std::span<const RemovedRegion> regions,
-                                                 std::uint64_t seed, int rounds, RegionTerms terms,
-                                                 const RegionParameters& parameters) {
+                                                 std::uint64_t seed, int rounds,
+                                                 RegionTerms terms) {
   if (rounds < 1) {
     throw std::invalid_argument("region_label_test: at least one round is needed");
   }
-  Regions all(regions, parameters.smoothing);
+  Regions all(regions);
   const auto gap = [&] {
     return all.gap(regions, all.score(regions, RegionTraining::kLeavePairOut, terms));
   };

@@ -29,26 +29,21 @@ enum class RegionTerms : std::uint8_t {
   kRemoved,  // removed voxels only, as the source
 };
 
-struct RegionParameters {
-  double smoothing{1.0};  // Laplace's pseudo-count alpha, of removals and of the contrary > 0
-};
-
 /// log(p_expert / p_novice) of one procedure:
 ///
-///     p_g(v) = (k_g(v) + alpha_g) / (n_g + 2 alpha_g),    alpha_g = alpha n_g / n
+///     p_g(v) = (k_g(v) + alpha_g) / (n_g + 2 alpha_g),    alpha_g = n_g / n
 ///     kAll:      sum over removed v of log p_e/p_n + over others of log (1 - p_e)/(1 - p_n)
 ///     kRemoved:  the first sum alone
 ///
 /// k_g(v) of a group's n_g procedures removed the voxel; n is the mean of both n_g, so that groups
-/// of one size have Laplace's rule and a voxel that nobody removed says nothing with any sizes.
+/// of one size have Laplace's rule (a pseudo-count of 1) and a voxel that nobody removed says
+/// nothing with any sizes.
 /// Not defined where the training leaves a group without procedures.
 /// Source: Morris 2006, §3.5.3.
-/// @returns (regions). @throws std::invalid_argument for smoothing not above 0, or a participant in
-/// both groups.
+/// @returns (regions). @throws std::invalid_argument for a participant in both groups.
 std::vector<std::optional<double>> region_log_ratios(std::span<const RemovedRegion> regions,
                                                      RegionTraining training,
-                                                     RegionTerms terms = RegionTerms::kAll,
-                                                     const RegionParameters& parameters = {});
+                                                     RegionTerms terms = RegionTerms::kAll);
 
 /// One procedure, scored each way. The first is the default: kLeavePairOut, kAll.
 struct RegionScores {
@@ -60,8 +55,7 @@ struct RegionScores {
   std::optional<double> removed_resubstitution;  // as the source
 };
 
-std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions,
-                                        const RegionParameters& parameters = {});
+std::vector<RegionScores> region_scores(std::span<const RemovedRegion> regions);
 
 /// Whether experts have higher scores than novices, by what the labels are worth: scores share
 /// their training and are not independent, so a t-test of them is not exact; this is, because all
@@ -77,7 +71,6 @@ struct RegionLabelTest {
 /// @throws std::invalid_argument as region_log_ratios() does.
 std::optional<RegionLabelTest> region_label_test(std::span<const RemovedRegion> regions,
                                                  std::uint64_t seed, int rounds = 199,
-                                                 RegionTerms terms = RegionTerms::kAll,
-                                                 const RegionParameters& parameters = {});
+                                                 RegionTerms terms = RegionTerms::kAll);
 
 }  // namespace haptrial::analysis::drilling

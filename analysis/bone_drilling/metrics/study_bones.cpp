@@ -25,9 +25,8 @@ std::vector<bool> open_air(const bone::BoneModel& bone) {
   std::vector<bool> open(grid.count(), false);
   std::vector<Eigen::Vector3i> todo;
   const auto visit = [&](const Eigen::Vector3i& v) {
-    const bool inside = (v.array() >= 0).all() && v.x() < grid.size[0] && v.y() < grid.size[1] &&
-                        v.z() < grid.size[2];
-    const std::size_t at = inside ? grid.index(v.x(), v.y(), v.z()) : 0;
+    const bool inside = grid.contains(v);
+    const std::size_t at = inside ? grid.index(v) : 0;
     if (inside && bone.labels[at] == 0 && !open[at]) {
       open[at] = true;
       todo.push_back(v);

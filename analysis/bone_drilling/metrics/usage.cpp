@@ -58,7 +58,7 @@ void UsageMeter::remove(const Removal& removal) {
       return;
     }
   }
-  const std::size_t at = grid.index(removal.voxel.x(), removal.voxel.y(), removal.voxel.z());
+  const std::size_t at = grid.index(removal.voxel);
   const double density = bone_->density.empty() ? 1.0 : static_cast<double>(bone_->density[at]);
   const double volume = density * std::pow(grid.spacing, 3);
   if (removal.label < usage_.structures.size()) {

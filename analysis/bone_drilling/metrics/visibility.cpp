@@ -4,6 +4,17 @@
 
 namespace haptrial::analysis::drilling {
 
+BurrOnTick burr_of(const ToolTick& tick, const ProcedureTool* tool) noexcept {
+  BurrOnTick burr;
+  burr.centre = tick.position;
+  burr.axis = tick.axis.cast<double>();
+  if (tool != nullptr) {
+    burr.radius = tool->burr_radius;
+    burr.shape = tool->shape.get();
+  }
+  return burr;
+}
+
 Visibility visibility(const Procedure& procedure) {
   struct Visitor {
     const Procedure& procedure;

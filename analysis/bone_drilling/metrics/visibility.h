@@ -1,10 +1,15 @@
 #pragma once
 
-#include "analysis/bone_drilling/metrics/burr_on_tick.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/bone/drill/sight.h"
 
 namespace haptrial::analysis::drilling {
+
+using bone::BurrOnTick;
+using bone::in_frame;
+
+/// @param tool  null: none  @returns it in W
+BurrOnTick burr_of(const ToolTick& tick, const ProcedureTool* tool) noexcept;
 
 using bone::is_visible;
 using bone::StandingBone;

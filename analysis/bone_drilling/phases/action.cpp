@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "analysis/bone_drilling/metrics/strokes.h"
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -85,9 +85,7 @@ class Observer {
   double farthest() const { return 250.0 * p_.bone->grid.spacing; }
 
   bone::Voxel voxel(const ToolTick& tick) const {
-    const geometry::VoxelGrid& grid = p_.bone->grid;
-    const Eigen::Vector3d at = (pose_BW_ * tick.position - grid.origin) / grid.spacing;
-    return at.array().round().cast<int>();
+    return p_.bone->grid.nearest(pose_BW_ * tick.position);
   }
 
   /// Means over the ticks of a stretch.
@@ -117,10 +115,7 @@ class Observer {
 
   /// Depth where the field knows none: outside of the grid there is air.
   double beyond(const bone::Voxel& at) const {
-    const auto& size = p_.bone->grid.size;
-    const bool inside =
-        (at.array() >= 0).all() && at.x() < size[0] && at.y() < size[1] && at.z() < size[2];
-    return inside && !air_->empty() ? air_->reach() : 0.0;
+    return p_.bone->grid.contains(at) && !air_->empty() ? air_->reach() : 0.0;
   }
 
   /// The view from the first tick of an action to its last.

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <map>
 
-#include "analysis/bone_drilling/metrics/counted_passes.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/files/delimited.h"
 #include "core/base/counted.h"
-#include "core/bone/region/crossing_row.h"
+#include "core/bone/region/forbidden_region.h"
 #include "core/bone/region/region_setup.h"
 #include "core/record/read/session_reader.h"
 

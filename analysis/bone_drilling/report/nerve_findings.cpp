@@ -6,7 +6,7 @@
 #include <iterator>
 #include <utility>
 
-#include "analysis/bone_drilling/metrics/counted_passes.h"
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/base/definition/given_in.h"
 #include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/drilling_tables.h"

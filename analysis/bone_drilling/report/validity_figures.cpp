@@ -1,5 +1,5 @@
 #include "analysis/bone_drilling/report/validity_figures.h"
-#include "analysis/document/embedded_png.h"
+#include "analysis/document/html.h"
 
 #include <fmt/format.h>
 

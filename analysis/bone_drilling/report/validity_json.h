@@ -4,7 +4,6 @@
 #include <string>
 
 #include "analysis/bone_drilling/report/validity_findings.h"
-#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/finding.h"
 
 namespace haptrial::analysis::drilling {

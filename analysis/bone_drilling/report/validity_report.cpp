@@ -10,10 +10,8 @@
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
-#include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/validity_words.h"
 #include "analysis/learning/learned_study.h"
-#include "analysis/statistics/design/interval_word.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {

@@ -112,7 +112,7 @@ ValidityResult analyze(const ValidityStudy& study) {
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");
   }
-  const auto regions = add_region_scores(result.procedures, study.plan.expert_groups, study.region);
+  const auto regions = add_region_scores(result.procedures, study.plan.expert_groups);
   std::vector<Rating> ratings;
   if (!study.ratings.empty() && fs::exists(study.ratings)) {
     ratings = load_ratings(study.ratings);
@@ -121,8 +121,7 @@ ValidityResult analyze(const ValidityStudy& study) {
     result.checked.checklist = load_checklist(study.checklist);
     result.checked.rows = load_checked(study.checked, result.checked.checklist);
   }
-  const auto region_test =
-      region_label_test(result.procedures, study.plan.expert_groups, study.region);
+  const auto region_test = region_label_test(result.procedures, study.plan.expert_groups);
   result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);
   result.structure = structure_of(study, result.procedures);
   result.learned = learned_study(learned_quantities(result.procedures, study.learning.outcomes),

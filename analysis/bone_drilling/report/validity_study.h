@@ -7,7 +7,7 @@
 
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
-#include "analysis/bone_drilling/report/validity_result.h"
+#include "analysis/bone_drilling/report/validity_findings.h"
 #include "analysis/document/finding.h"
 
 namespace haptrial::record {
@@ -26,7 +26,6 @@ struct ValidityStudy {
   LearningPlan learning{};         // without outcomes: nobody asks what was learned
   LearningNames learning_names{};  // with outcomes
   MetricOptions metrics;
-  RegionParameters region;
   /// Structure whose force profile is drawn (Figure 20); empty: the chorda tympani if there are
   /// removals near it, else the structure with most of them.
   std::string structure;

@@ -12,13 +12,6 @@
 namespace haptrial::analysis::drilling {
 namespace {
 
-bone::Voxel voxel_of(const geometry::VoxelGrid& grid, std::size_t index) {
-  const auto x = static_cast<std::size_t>(grid.size[0]);
-  const auto y = static_cast<std::size_t>(grid.size[1]);
-  return {static_cast<int>(index % x), static_cast<int>(index / x % y),
-          static_cast<int>(index / (x * y))};
-}
-
 /// Drawn content of a voxel: a removed one by whether it was seen, else a structure's label.
 struct Drawn {
   std::vector<std::uint16_t> kinds;  // (voxels) 0: nothing
@@ -31,7 +24,7 @@ struct Drawn {
         return 0;
       }
     }
-    return kinds[grid.index(v.x(), v.y(), v.z())];
+    return kinds[grid.index(v)];
   }
 };
 
@@ -73,7 +66,7 @@ Drawn drawn_of(const SeenRemovals& r, const std::vector<bool>& labels) {
 void add_side(const geometry::VoxelGrid& grid, const bone::Voxel& voxel, int axis, int way,
               const render::Colour& colour, std::vector<render::SceneTriangle>& triangles) {
   const double half = 0.5 * grid.spacing;
-  const Eigen::Vector3d centre = grid.centre(voxel.x(), voxel.y(), voxel.z());
+  const Eigen::Vector3d centre = grid.centre(voxel);
   const int u = (axis + 1) % 3;
   const int v = (axis + 2) % 3;
   std::array<Eigen::Vector3d, 4> corners;
@@ -104,7 +97,7 @@ std::pair<Layer, std::size_t> fullest(const SeenRemovals& r, const Layer& start,
     std::vector<std::size_t> layers(
         static_cast<std::size_t>(r.bone->grid.size[static_cast<std::size_t>(axis)]), 0);
     for (std::size_t n = 0; n < r.removed.size(); ++n) {
-      const int at = voxel_of(r.bone->grid, r.removed[n])[axis];
+      const int at = r.bone->grid.voxel(r.removed[n])[axis];
       layers[static_cast<std::size_t>(at)] += counts(r.seen[n]) ? 1 : 0;
     }
     const auto top = std::max_element(layers.begin(), layers.end());
@@ -130,13 +123,11 @@ Eigen::AlignedBox3i surroundings(const SeenRemovals& r) {
   constexpr double kAround = 6e-3;  // [m]
   Eigen::AlignedBox3i box;
   for (const std::uint32_t index : r.removed) {
-    box.extend(voxel_of(r.bone->grid, index));
+    box.extend(r.bone->grid.voxel(index));
   }
   const int more = static_cast<int>(std::ceil(kAround / r.bone->grid.spacing));
-  const auto& size = r.bone->grid.size;
-  const Eigen::Vector3i end(size[0] - 1, size[1] - 1, size[2] - 1);
   const Eigen::Vector3i low = (box.min().array() - more).max(0);
-  const Eigen::Vector3i high = (box.max().array() + more).min(end.array());
+  const Eigen::Vector3i high = (box.max().array() + more).min(r.bone->grid.last().array());
   return {low, high};
 }
 
@@ -144,9 +135,7 @@ Eigen::AlignedBox3i surroundings(const SeenRemovals& r) {
 /// @param along  the axis of the grid along which everything stays
 void keep_near(std::vector<render::SceneTriangle>& triangles, const SeenRemovals& r, int along) {
   const Eigen::AlignedBox3i voxels = surroundings(r);
-  const auto centre = [&](const Eigen::Vector3i& v) {
-    return r.bone->grid.centre(v.x(), v.y(), v.z());
-  };
+  const auto centre = [&](const Eigen::Vector3i& v) { return r.bone->grid.centre(v); };
   Eigen::AlignedBox3d box(centre(voxels.min()), centre(voxels.max()));
   constexpr double kFar = 1e3;  // [m]
   box.min()[along] = -kFar;
@@ -204,7 +193,7 @@ std::vector<render::SceneTriangle> visibility_scene(const SeenRemovals& removals
     if (drawn.kinds[i] == 0) {
       continue;
     }
-    const bone::Voxel voxel = voxel_of(bone.grid, i);
+    const bone::Voxel voxel = bone.grid.voxel(i);
     const render::Colour colour = colour_of(bone, drawn.kinds[i]);
     for (int axis = 0; axis < 3; ++axis) {
       for (const int way : {-1, 1}) {

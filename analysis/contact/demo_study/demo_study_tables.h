@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -55,5 +56,10 @@ struct DemoStudyTables {
 /// Source: Morris 2006, §7.4.1, §7.4.2, §7.4.3, §7.4.4.
 DemoStudyTables make_demo_study_tables(const DemoStudyOptions& options,
                                        const std::function<void(const std::string&)>& said = {});
+
+// Morris 2006, Tables 4 to 6, "RMS force error" [N].
+inline constexpr std::array kSourceTable4{0.136, 0.130, 0.129};
+inline constexpr std::array kSourceTable5{0.132, 0.067};
+inline constexpr std::array kSourceTable6{0.085, 0.031, 0.031, 0.022, 0.022, 0.015, 0.013, 0.009};
 
 }  // namespace haptrial::evaluation

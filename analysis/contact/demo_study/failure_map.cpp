@@ -10,7 +10,7 @@
 #include "analysis/document/palette.h"
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,11 @@ analysis::Document evaluation_report(const Evaluation& evaluation, const Evaluat
 
 /// Every number, unrounded.
 std::string evaluation_json(const Evaluation& evaluation, const EvaluationNames& names);
+
+/// evaluation.json, contact.csv, objects.toml, report.html and its pictures (.svg, .png), all of
+/// them or none.
+/// @throws InputError when `folder` holds anything or cannot be made; RunError as draw_figures().
+void write_evaluation(const Evaluation& evaluation, const EvaluationNames& names,
+                      const std::filesystem::path& folder);
 
 }  // namespace haptrial::evaluation

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <exception>
 
-#include "analysis/contact/demo_study/ridge.h"
+#include "analysis/contact/demo_study/ridge_drag.h"
 #include "analysis/contact/exam/mesh_file.h"
 
 namespace haptrial::evaluation {

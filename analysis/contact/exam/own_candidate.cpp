@@ -10,11 +10,11 @@
 #include "analysis/contact/exam/soft_candidates.h"
 #include "core/base/error.h"
 #include "core/contact/felt_body.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/contact/rigid_tool.h"
 #include "core/contact/signed_distance.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_size.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/deformable/elements/implicit_motion.h"
 #include "core/deformable/elements/static_solver.h"
 #include "core/deformable/springs/spring_motion.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 
 namespace haptrial::evaluation {
 namespace {

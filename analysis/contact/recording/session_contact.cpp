@@ -9,7 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/contact_row.h"
+#include "core/record/rows/object_rows.h"
 
 namespace haptrial::evaluation {
 namespace {

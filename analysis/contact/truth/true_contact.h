@@ -8,6 +8,11 @@
 
 namespace haptrial::evaluation {
 
+/// @throws std::invalid_argument for a body, stiffness or friction that breaks its bound, or a
+/// position that is not finite.
+void check_truth(const TrueBody& body, std::span<const Eigen::Vector3d> tool, double stiffness,
+                 double friction);
+
 struct TrueContact {
   bool touching{false};
   Eigen::Vector3d proxy;  // the tool itself in the air [m]
@@ -33,7 +38,7 @@ std::vector<TrueContact> true_contacts(const TrueBody& body, std::span<const Eig
 /// first touches where the straight way from the last position in the air meets the surface.
 ///
 /// Exact on plane faces (rubbed_profile.h) and, to rounding, on sphere and cylinder; on torus and
-/// wavy plate the sliding way is integrated with the fourth order, to 1e-12 m (rubbed_surface.h).
+/// wavy plate the sliding way is integrated with the fourth order, to 1e-12 m (rubbed_profile.h).
 std::vector<TrueContact> true_contacts(const TrueBody& body, std::span<const Eigen::Vector3d> tool,
                                        double stiffness, double friction);
 

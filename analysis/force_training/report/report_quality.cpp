@@ -2,7 +2,7 @@
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/statistics/design/wording.h"
-#include "core/record/read/overruns.h"
+#include "core/record/read/session_facts.h"
 
 namespace haptrial::analysis {
 namespace {

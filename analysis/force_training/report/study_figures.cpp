@@ -9,7 +9,7 @@
 
 #include "analysis/document/palette.h"
 #include "analysis/force_training/study/order_balance.h"
-#include "analysis/force_training/study/study_values.h"
+#include "analysis/force_training/study/study_statistics.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/quality/quality_columns.h"
+#include "analysis/quality/trial_quality.h"
 #include "core/base/error.h"
 
 namespace haptrial::analysis {

@@ -15,13 +15,12 @@
 
 #include "analysis/quality/session_quality.h"
 #include "core/base/error.h"
-#include "core/record/read/check_phases.h"
-#include "core/record/read/even_rows.h"
 #include "core/record/read/marked_trials.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/rows/tutoring_row.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -8,7 +8,7 @@
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
 #include "analysis/force_training/study/recall_frequency.h"
-#include "analysis/force_training/study/session_summary.h"
+#include "analysis/force_training/study/study_result.h"
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::record {

@@ -9,10 +9,10 @@
 
 #include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/score/score.h"
-#include "analysis/force_training/study/path_statistics.h"
 #include "analysis/force_training/study/quality_summary.h"
-#include "analysis/force_training/study/recall_picture.h"
+#include "analysis/force_training/study/recall_frequency.h"
 #include "analysis/force_training/study/session_recalls.h"
+#include "analysis/force_training/study/study_statistics.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -8,12 +10,36 @@
 
 #include "analysis/force_training/score/trial_score.h"
 #include "analysis/force_training/study/recall_frequency.h"
-#include "analysis/force_training/study/recall_picture.h"
-#include "analysis/force_training/study/session_summary.h"
 #include "analysis/force_training/study/study_statistics.h"
 #include "analysis/learning/learned_study.h"
+#include "analysis/quality/timing.h"
+#include "analysis/quality/tracking.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::analysis {
+
+struct StudyResult;
+
+/// The lines that matter, with participants as the unit: the mean recall error of each condition,
+/// whether conditions differ, and the planned tests.
+std::vector<std::string> summary_lines(const StudyResult& study);
+
+/// A test pass that has no score, and why.
+struct Exclusion {
+  std::string subject;
+  std::int32_t trial{0};
+  std::string reason;
+};
+
+/// Facts of one session file besides its scores.
+struct SessionSummary {
+  std::string file;  // name without its folder
+  record::SessionInfo info;
+  std::size_t test_passes{0};  // in the file, scored or not
+  std::size_t scored{0};
+  TrackingSummary tracking;  // over all completed passes, training and test
+  LoopTiming timing;
+};
 
 /// A session of each participant, as the definition plans it.
 struct SessionOfStudy {

@@ -4,14 +4,87 @@
 #include <array>
 #include <map>
 #include <set>
+#include <span>
 #include <tuple>
+#include <vector>
 
-#include "analysis/force_training/study/study_tests.h"
-#include "analysis/force_training/study/study_values.h"
+#include "analysis/force_training/score/trial_score.h"
 #include "analysis/statistics/relation/regression.h"
+#include "analysis/statistics/variance/effect_size.h"
 
 namespace haptrial::analysis {
 namespace {
+
+/// The planned tests of conditions as the source made them.
+void add_pooled_tests(StudyStatistics& study, std::span<const TrialScore> scores,
+                      const AnalysisPlan& plan) {
+  for (const PlannedTest& sides : plan.tests) {
+    const Values a = of_condition(scores, sides.a);
+    const Values b = of_condition(scores, sides.b);
+    if (a.empty() || b.empty()) {
+      continue;  // a level of several conditions, or one without trials
+    }
+    study.comparisons.push_back(
+        {sides, student_t_test(a, b, sides.tail), welch_t_test(a, b, sides.tail), cohens_d(a, b)});
+  }
+}
+
+/// Each score less the mean of its condition.
+Values residuals(const std::vector<Values>& groups) {
+  Values all;
+  for (const Values& group : groups) {
+    const auto m = moments(group);
+    for (const double value : group) {
+      all.push_back(m ? value - m->mean() : 0.0);
+    }
+  }
+  return all;
+}
+
+void add_pooled(StudyStatistics& study, std::span<const TrialScore> scores) {
+  std::vector<Values> groups;
+  for (const auto& condition : study.conditions) {
+    groups.push_back(of_condition(scores, condition));
+  }
+  study.anova = one_way_anova(groups);
+  if (study.anova) {
+    study.eta = eta_squared(*study.anova);
+  } else {
+    study.eta = Undefined{study.anova.because()};
+  }
+  study.ranks = kruskal_wallis(groups);
+  study.levene = levene(groups, Centre::kMedian);
+  study.normality = shapiro_wilk(residuals(groups));
+}
+
+void add_repeated(StudyStatistics& study) {
+  std::vector<Values> table;
+  for (const auto& row : study.table_1) {
+    table.push_back(row.means);
+  }
+  study.repeated = repeated_measures_anova(table);
+  study.friedman = friedman(table);
+  if (!study.repeated) {
+    study.partial_eta = Undefined{study.repeated.because()};
+    study.generalized_eta = Undefined{study.repeated.because()};
+    return;
+  }
+  const RepeatedAnova& r = *study.repeated;
+  study.partial_eta = partial_eta_squared(r.f, r.df_condition, r.df_error);
+  study.generalized_eta =
+      generalized_eta_squared(r.squares_condition, r.squares_participants + r.squares_error);
+}
+
+/// Adds the tests of a study to what study_statistics() has gathered: conditions, subjects, table
+/// and table_1 are there.
+void add_tests(StudyStatistics& study, std::span<const TrialScore> scores,
+               const StudyQuestions& questions) {
+  study.tests = design_tests(study.table, questions.plan, questions.resampling);
+  add_repeated(study);
+  study.mixed = study_mixed(scores, study.conditions);
+  add_pooled(study, scores);
+  add_pooled_tests(study, scores, questions.plan);
+}
 
 constexpr std::array<const char*, 3> kKnownConditions{"haptic", "visual", "visuohaptic"};
 
@@ -156,6 +229,27 @@ StudyStatistics study_statistics(std::span<const TrialScore> scores,
   add_learning(study, scores);
   add_blocks(study, scores);
   return study;
+}
+
+std::optional<StudyStatistics> path_statistics(std::span<const TrialScore> scores,
+                                               const StudyQuestions& questions) {
+  constexpr double kMillimetre = 1e-3;  // [m]
+  std::vector<TrialScore> paths;
+  for (const TrialScore& score : scores) {
+    if (score.path_error) {
+      paths.push_back(score);
+      paths.back().score = *score.path_error / kMillimetre;
+    }
+  }
+  return paths.empty() ? std::nullopt : std::optional(study_statistics(paths, questions));
+}
+
+StudyQuestions questions_of(const std::vector<std::string>& factors, const AnalysisPlan& plan,
+                            int threads) {
+  StudyQuestions questions{plan, factors};
+  questions.resampling.count = 9999;
+  questions.resampling.threads = threads;
+  return questions;
 }
 
 }  // namespace haptrial::analysis

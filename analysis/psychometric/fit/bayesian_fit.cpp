@@ -6,7 +6,7 @@
 
 #include "analysis/psychometric/fit/credible.h"
 #include "analysis/psychometric/fit/posterior.h"
-#include "analysis/statistics/base/minimum.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -6,9 +6,14 @@
 #include <vector>
 
 #include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/psychometric/fit/trial_blocks.h"
 #include "analysis/statistics/base/defined.h"
 #include "analysis/statistics/base/resampling.h"
 #include "analysis/statistics/tests/bootstrap.h"
+
+namespace haptrial {
+class RandomStream;
+}
 
 namespace haptrial::analysis {
 
@@ -66,13 +71,20 @@ FitBootstrap bootstrap_of(const std::string& participant, const std::string& con
 BootstrappedFit bootstrap_fit(std::span<const TrialBlock> blocks, const LikelihoodOptions& options,
                               std::span<const BootstrapTarget> asked, const FitBootstrap& how);
 
-/// Change of the fit when a block is left out.
-struct BlockInfluence {
-  double threshold{0.0};  // threshold without the block - with it, in the coordinate
-  double deviance{0.0};   // by how much the deviance falls
+/// Draws answers to the levels of blocks: binomial, one uniform number a block.
+class AnswerDraws {
+ public:
+  /// @param shares  of answers 1, one a block, in [0, 1]
+  AnswerDraws(std::span<const TrialBlock> blocks, std::span<const double> shares);
+  /// Shares from a function.
+  AnswerDraws(std::span<const TrialBlock> blocks,
+              const psychometric::PsychometricFunction& function);
+
+  /// @param correct  (blocks) gets the numbers of answers 1; no allocation
+  void draw(RandomStream& random, std::span<int> correct) const noexcept;
+
+ private:
+  std::vector<std::vector<double>> below_;  // (blocks) P(answers 1 <= k), k from 0 to total - 1
 };
-/// One for each block; nothing where fewer than two levels would remain.
-std::vector<std::optional<BlockInfluence>> block_influence(std::span<const TrialBlock> blocks,
-                                                           const LikelihoodOptions& options);
 
 }  // namespace haptrial::analysis

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "core/psychometric/function/sigmoid_curve.h"
+#include "core/psychometric/function/sigmoid.h"
 
 /// How the likelihood of a psychometric function changes with its parameters; for LikelihoodFitter.
 namespace haptrial::analysis::climbing {

@@ -7,11 +7,53 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
-#include "analysis/psychometric/fit/knots.h"
+#include "core/psychometric/procedure/quest_tables.h"
 
 namespace haptrial::analysis {
 namespace {
+
+/// A parameter between the values that a definition lists. A place counts in knots: 1.5 is halfway
+/// from the second to the third of the values in rising order.
+class Knots {
+ public:
+  explicit Knots(const psychometric::QuestDimension& parameter);
+
+  double last() const noexcept { return static_cast<double>(values_.size() - 1); }
+  /// @param place  0 to last()
+  double value(double place) const noexcept { return between(values_, place); }
+  /// The prior's weight there, for equal steps of the place.
+  double weight(double place) const noexcept { return between(weights_, place); }
+
+ private:
+  static double between(const std::vector<double>& of, double place) noexcept;
+
+  std::vector<double> values_;   // rising
+  std::vector<double> weights_;  // likewise
+};
+
+Knots::Knots(const psychometric::QuestDimension& parameter) {
+  std::vector<std::pair<double, double>> knots;
+  for (std::size_t i = 0; i < parameter.values.size(); ++i) {
+    knots.emplace_back(parameter.values[i], parameter.prior.empty() ? 1.0 : parameter.prior[i]);
+  }
+  std::sort(knots.begin(), knots.end());
+  for (const auto& [value, weight] : knots) {
+    values_.push_back(value);
+    weights_.push_back(weight);
+  }
+}
+
+double Knots::between(const std::vector<double>& of, double place) noexcept {
+  if (of.size() == 1) {
+    return of.front();
+  }
+  const auto left = std::min(static_cast<std::size_t>(std::max(0.0, place)), of.size() - 2);
+  const double share = place - static_cast<double>(left);
+  return of[left] + share * (of[left + 1] - of[left]);
+}
 
 using psychometric::QuestDefinition;
 

@@ -6,7 +6,7 @@
 
 #include "analysis/psychometric/fit/likelihood_fit.h"
 #include "analysis/psychometric/fit/trial_blocks.h"
-#include "core/psychometric/function/sigmoid_curve.h"
+#include "core/psychometric/function/sigmoid.h"
 
 namespace haptrial::analysis::hierarchical {
 

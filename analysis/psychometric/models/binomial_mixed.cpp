@@ -1,5 +1,6 @@
 #include "analysis/psychometric/models/binomial_mixed.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,14 +8,93 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
-#include "analysis/psychometric/models/binomial_link.h"
-#include "analysis/psychometric/models/laplace.h"
+#include "analysis/psychometric/models/binomial_model.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::analysis {
 namespace {
+
+/// The rows of one participant.
+struct BinomialGroup {
+  BinomialData data;       // predictors are not used
+  Eigen::MatrixXd fixed;   // (rows x p)
+  Eigen::MatrixXd random;  // (rows x q)
+};
+
+/// The most probable u ~ N(0, I) of a participant, b = lower u.
+struct LaplaceMode {
+  double log_likelihood{0.0};  // Laplace's, without binomial coefficients
+  Eigen::VectorXd u;           // (q)
+  Eigen::VectorXd weight;      // (rows) Fisher's information about eta
+  Eigen::MatrixXd factor;      // (q x q) L of L L' = I + lower' random' W random lower
+};
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Penalised scoring. Nothing where it does not end.
+std::optional<LaplaceMode> laplace_mode(const BinomialGroup& group, BinomialLink link,
+                                        const VectorXd& beta, const MatrixXd& lower) {
+  constexpr int kMost = 100, kHalvings = 40;
+  const MatrixXd z = group.random * lower;
+  const VectorXd around = group.fixed * beta;
+  LaplaceMode mode;
+  mode.u = VectorXd::Zero(lower.cols());
+  BinomialRows rows = binomial_rows(group.data, link, around);
+  double value = rows.log_likelihood;
+  for (int step = 0; step < kMost && std::isfinite(value); ++step) {
+    const VectorXd slope = z.transpose() * rows.slope - mode.u;
+    const MatrixXd information = z.transpose() * rows.weight.asDiagonal() * z +
+                                 MatrixXd::Identity(lower.cols(), lower.cols());
+    const auto factor = cholesky(information);
+    if (!factor) {
+      return std::nullopt;
+    }
+    const VectorXd half = solve_lower(*factor, slope);
+    if (half.squaredNorm() < 1e-26 * (1.0 + std::abs(value))) {
+      mode.log_likelihood = value - factor->diagonal().array().log().sum();
+      mode.weight = rows.weight;
+      mode.factor = *factor;
+      return mode;
+    }
+    const VectorXd change =
+        solve_lower(factor->transpose().rowwise().reverse().colwise().reverse(), half.reverse())
+            .reverse();
+    double part = 1.0;
+    bool moved = false;
+    for (int i = 0; i < kHalvings && !moved; ++i, part *= 0.5) {
+      const VectorXd next = mode.u + part * change;
+      const BinomialRows there = binomial_rows(group.data, link, around + z * next);
+      const double found = there.log_likelihood - 0.5 * next.squaredNorm();
+      moved = found >= value - 1e-13 * std::abs(value);
+      if (moved) {
+        mode.u = next;
+        rows = there;
+        value = found;
+      }
+    }
+    if (!moved) {
+      return std::nullopt;
+    }
+  }
+  return std::nullopt;
+}
+
+/// A lower triangle from its elements, by columns.
+MatrixXd lower_triangle(const VectorXd& elements, Index size) {
+  MatrixXd lower = MatrixXd::Zero(size, size);
+  Index k = 0;
+  for (Index column = 0; column < size; ++column) {
+    for (Index row = column; row < size; ++row) {
+      lower(row, column) = elements[k++];
+    }
+  }
+  return lower;
+}
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -264,20 +344,6 @@ Defined<BinomialMixedModel> binomial_mixed_model(const BinomialData& data, Binom
   model.fixed.deviance = 2.0 * (saturated_likelihood(data) + best->value);
   add_normal_tests(model.fixed, f.beta(best->at).cwiseQuotient(scale));
   return model;
-}
-
-LikelihoodRatio likelihood_ratio(const BinomialMixedModel& smaller,
-                                 const BinomialMixedModel& larger) {
-  if (larger.parameters <= smaller.parameters ||
-      larger.fixed.observations != smaller.fixed.observations) {
-    throw std::invalid_argument("larger must have more parameters than smaller, and as many rows");
-  }
-  LikelihoodRatio test;
-  test.df = larger.parameters - smaller.parameters;
-  test.chi_squared =
-      std::max(0.0, 2.0 * (larger.fixed.log_likelihood - smaller.fixed.log_likelihood));
-  test.p = chi_squared_upper_tail(test.chi_squared, test.df);
-  return test;
 }
 
 }  // namespace haptrial::analysis

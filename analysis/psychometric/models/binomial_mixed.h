@@ -37,14 +37,4 @@ Defined<BinomialMixedModel> binomial_mixed_model(const BinomialData& data, Binom
                                                  std::span<const std::size_t> random,
                                                  double level = 0.95);
 
-/// Test of a model against one within it, fitted to the same rows.
-struct LikelihoodRatio {
-  double chi_squared{0.0};
-  int df{0};
-  double p{1.0};  // too large where a variance is tested, whose 0 lies at a boundary
-};
-/// @throws std::invalid_argument unless `larger` has more parameters and both have as many rows.
-LikelihoodRatio likelihood_ratio(const BinomialMixedModel& smaller,
-                                 const BinomialMixedModel& larger);
-
 }  // namespace haptrial::analysis

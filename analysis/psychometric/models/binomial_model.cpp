@@ -1,13 +1,16 @@
 #include "analysis/psychometric/models/binomial_model.h"
 
+#include <gsl/gsl_sf_gamma.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/psychometric/models/binomial_link.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
+#include "core/psychometric/function/sigmoid.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -155,6 +158,87 @@ Defined<EqualityPoint> equality_point(const BinomialModel& model, BinomialLink l
   e.jnd_low = e.jnd - wide * e.jnd_error;
   e.jnd_high = e.jnd + wide * e.jnd_error;
   return e;
+}
+
+using Eigen::Index;
+
+BinomialRows binomial_rows(const BinomialData& data, BinomialLink link,
+                           const Eigen::VectorXd& eta) {
+  const auto sigmoid = link == BinomialLink::kProbit ? psychometric::Sigmoid::kGaussian
+                                                     : psychometric::Sigmoid::kLogistic;
+  BinomialRows rows{0.0, Eigen::VectorXd::Zero(eta.size()), Eigen::VectorXd::Zero(eta.size())};
+  for (Index i = 0; i < eta.size(); ++i) {
+    const psychometric::SigmoidPoint s = psychometric::sigmoid_point(sigmoid, eta[i]);
+    const double yes = data.yes[static_cast<std::size_t>(i)];
+    const double trials = data.trials[static_cast<std::size_t>(i)];
+    if ((yes > 0.0 && !(s.share > 0.0)) || (trials > yes && !(s.beyond > 0.0))) {
+      rows.log_likelihood = -std::numeric_limits<double>::infinity();
+      return rows;
+    }
+    rows.log_likelihood += (yes > 0.0 ? yes * std::log(s.share) : 0.0) +
+                           (trials > yes ? (trials - yes) * std::log(s.beyond) : 0.0);
+    if (s.share > 0.0 && s.beyond > 0.0) {
+      rows.slope[i] =
+          (yes * s.beyond - (trials - yes) * s.share) * s.density / (s.share * s.beyond);
+      rows.weight[i] = trials * s.density * s.density / (s.share * s.beyond);
+    }
+  }
+  return rows;
+}
+
+double log_binomials(const BinomialData& data) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < data.yes.size(); ++i) {
+    sum +=
+        gsl_sf_lnchoose(static_cast<unsigned>(data.trials[i]), static_cast<unsigned>(data.yes[i]));
+  }
+  return sum;
+}
+
+Eigen::MatrixXd checked_columns(const BinomialData& data) {
+  const Index rows = std::ssize(data.yes);
+  if (std::ssize(data.trials) != rows || data.predictors.rows() != rows) {
+    throw std::invalid_argument("yes, trials and predictors must have as many rows");
+  }
+  for (std::size_t i = 0; i < data.yes.size(); ++i) {
+    if (data.trials[i] < 1 || data.yes[i] < 0 || data.yes[i] > data.trials[i]) {
+      throw std::invalid_argument("yes of a row must lie in 0 .. trials, and trials above 0");
+    }
+  }
+  Eigen::MatrixXd columns(rows, data.predictors.cols() + 1);
+  columns << Eigen::VectorXd::Ones(rows), data.predictors;
+  return columns;
+}
+
+std::optional<ScoringMaximum> fisher_scoring(const ScoredLikelihood& likelihood,
+                                             const Eigen::VectorXd& start) {
+  constexpr int kMost = 500, kHalvings = 40;
+  Eigen::VectorXd p = start;
+  auto point = likelihood(p);
+  for (int step = 0; point && step < kMost; ++step) {
+    const auto change = solve_positive(point->information, point->slope);
+    if (!change) {
+      return std::nullopt;
+    }
+    const double promise = 0.5 * change->col(0).dot(point->slope);
+    if (promise < 1e-18 * (1.0 + std::abs(point->value))) {
+      return ScoringMaximum{p, *point};
+    }
+    double part = 1.0;
+    for (int i = 0; i < kHalvings; ++i, part *= 0.5) {
+      const Eigen::VectorXd next = p + part * change->col(0);
+      const auto there = likelihood(next);
+      if (there && there->value >= point->value - 1e-13 * std::abs(point->value)) {
+        p = next;
+        point = there;
+        break;
+      }
+    }
+    if (p.cwiseAbs().maxCoeff() > 50.0) {
+      return std::nullopt;  // it rises without end
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace haptrial::analysis

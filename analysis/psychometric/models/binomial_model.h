@@ -2,12 +2,23 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <functional>
+#include <optional>
 #include <vector>
 
-#include "analysis/psychometric/models/binomial_data.h"
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::analysis {
+
+/// g(P) = predictors times coefficients.
+enum class BinomialLink { kProbit, kLogit };
+
+/// Answers and what they depend on, a row for each group of trials that share all of it.
+struct BinomialData {
+  std::vector<int> yes;        // (rows) >= 0
+  std::vector<int> trials;     // (rows) >= yes, > 0
+  Eigen::MatrixXd predictors;  // (rows x predictors) without a column for the intercept
+};
 
 /// A coefficient with its normal interval.
 struct BinomialCoefficient {
@@ -54,5 +65,42 @@ Defined<EqualityPoint> equality_point(const BinomialModel& model, BinomialLink l
 
 /// Fills error, z, p and interval of each coefficient from the covariance.
 void add_normal_tests(BinomialModel& model, const Eigen::VectorXd& estimates);
+
+/// Quantities of each row, at its linear predictor, for scoring.
+struct BinomialRows {
+  double log_likelihood{0.0};  // without binomial coefficients
+  Eigen::VectorXd slope;       // (rows) d log-likelihood / d eta
+  Eigen::VectorXd weight;      // (rows) Fisher's information about eta
+};
+
+/// @param eta  (rows). Not finite: the likelihood is 0 there.
+BinomialRows binomial_rows(const BinomialData& data, BinomialLink link, const Eigen::VectorXd& eta);
+
+/// Sum of the logarithms of the binomial coefficients.
+double log_binomials(const BinomialData& data);
+
+/// A column of ones before the predictors. @throws std::invalid_argument as binomial_regression.
+Eigen::MatrixXd checked_columns(const BinomialData& data);
+
+/// The logarithm of a likelihood at some parameters.
+struct ScoringPoint {
+  double value{0.0};
+  Eigen::VectorXd slope;
+  Eigen::MatrixXd information;  // Fisher's
+};
+
+/// Where a likelihood is highest.
+struct ScoringMaximum {
+  Eigen::VectorXd at;
+  ScoringPoint point;
+};
+
+/// Nothing where the parameters are out of their range.
+using ScoredLikelihood = std::function<std::optional<ScoringPoint>(const Eigen::VectorXd&)>;
+
+/// Fisher's scoring with halved steps. Nothing if the likelihood rises without end (a parameter
+/// beyond 50 in size) or its information is singular.
+std::optional<ScoringMaximum> fisher_scoring(const ScoredLikelihood& likelihood,
+                                             const Eigen::VectorXd& start);
 
 }  // namespace haptrial::analysis

@@ -3,6 +3,7 @@
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_integration.h>
 
+#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -10,7 +11,7 @@
 #include <string>
 
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -66,36 +67,6 @@ void check_counts(const DetectionCounts& counts, double level) {
   }
 }
 
-/// @param scale  d' of a yes/no task over that of this task.
-Defined<Detection> indices(const DetectionCounts& counts, RateCorrection correction, double level,
-                           double scale) {
-  check_counts(counts, level);
-  const auto hits = corrected(counts.hits, counts.misses, correction, "signal");
-  const auto alarms =
-      corrected(counts.false_alarms, counts.correct_rejections, correction, "noise");
-  if (!hits || !alarms) {
-    return Undefined{!hits ? hits.because() : alarms.because()};
-  }
-  Detection d;
-  d.hit_rate = hits->value;
-  d.false_alarm_rate = alarms->value;
-  d.d_prime = (hits->z() - alarms->z()) / scale;
-  const double sum = hits->z() + alarms->z();
-  const bool rounding = std::abs(sum) <= 1e-15 * std::abs(hits->z());
-  d.criterion = rounding ? 0.0 : -0.5 * sum;
-  if (d.d_prime != 0.0) {
-    d.relative_criterion = d.criterion / d.d_prime;
-  } else {
-    d.relative_criterion = Undefined{"d' is 0"};
-  }
-  d.log_beta = d.criterion * (hits->z() - alarms->z());
-  d.error = std::sqrt(hits->variance() + alarms->variance()) / scale;
-  const double z = normal_quantile(0.5 + 0.5 * level);
-  d.low = d.d_prime - z * d.error;
-  d.high = d.d_prime + z * d.error;
-  return d;
-}
-
 struct Choice {
   double d_prime;
   double others;
@@ -110,12 +81,31 @@ double choice_density(double x, void* choice) {
 
 Defined<Detection> detection(const DetectionCounts& counts, RateCorrection correction,
                              double level) {
-  return indices(counts, correction, level, 1.0);
-}
-
-Defined<Detection> forced_choice_detection(const DetectionCounts& counts, RateCorrection correction,
-                                           double level) {
-  return indices(counts, correction, level, std::numbers::sqrt2);
+  check_counts(counts, level);
+  const auto hits = corrected(counts.hits, counts.misses, correction, "signal");
+  const auto alarms =
+      corrected(counts.false_alarms, counts.correct_rejections, correction, "noise");
+  if (!hits || !alarms) {
+    return Undefined{!hits ? hits.because() : alarms.because()};
+  }
+  Detection d;
+  d.hit_rate = hits->value;
+  d.false_alarm_rate = alarms->value;
+  d.d_prime = hits->z() - alarms->z();
+  const double sum = hits->z() + alarms->z();
+  const bool rounding = std::abs(sum) <= 1e-15 * std::abs(hits->z());
+  d.criterion = rounding ? 0.0 : -0.5 * sum;
+  if (d.d_prime != 0.0) {
+    d.relative_criterion = d.criterion / d.d_prime;
+  } else {
+    d.relative_criterion = Undefined{"d' is 0"};
+  }
+  d.log_beta = d.criterion * (hits->z() - alarms->z());
+  d.error = std::sqrt(hits->variance() + alarms->variance());
+  const double z = normal_quantile(0.5 + 0.5 * level);
+  d.low = d.d_prime - z * d.error;
+  d.high = d.d_prime + z * d.error;
+  return d;
 }
 
 double forced_choice_share(double d_prime, int alternatives) {
@@ -147,6 +137,62 @@ Defined<double> forced_choice_d_prime(double share, int alternatives) {
     return Undefined{"the share of right answers is too close to 0 or 1"};
   }
   return find_root(beyond, low, high);
+}
+
+namespace {
+
+double below(double z) { return normal_upper_tail(-z); }
+
+/// Frijters 1979, Journal of Mathematical Psychology 19.
+double oddity_share(double d) {
+  const auto density = [d](double z) {
+    const double shift = d * std::numbers::sqrt2 / std::numbers::sqrt3;
+    const double far = -z * std::numbers::sqrt3;
+    return (below(far + shift) + below(far - shift)) * std::exp(-0.5 * z * z);
+  };
+  constexpr double kFar = 12.0;
+  using Rule = boost::math::quadrature::gauss_kronrod<double, 31>;
+  return std::sqrt(2.0 / std::numbers::pi) * Rule::integrate(density, 0.0, kFar, 8, 1e-12);
+}
+
+double both_or_neither(double a, double b) { return below(a) * below(b) + below(-a) * below(-b); }
+
+}  // namespace
+
+double task_share(DiscriminationTask task, double d, int alternatives) {
+  switch (task) {
+    case DiscriminationTask::kOneInterval:
+      return below(d / 2.0);
+    case DiscriminationTask::kOddity:
+      return oddity_share(d);
+    case DiscriminationTask::kAbx:
+      return both_or_neither(d / std::numbers::sqrt2, d / std::sqrt(6.0));
+    case DiscriminationTask::kSameDifferent:
+      return both_or_neither(d / 2.0, d / 2.0);
+    case DiscriminationTask::kForcedChoice:
+      break;
+  }
+  return forced_choice_share(d, alternatives);
+}
+
+Defined<double> task_d_prime(DiscriminationTask task, double share, int alternatives) {
+  if (task == DiscriminationTask::kForcedChoice) {
+    return forced_choice_d_prime(share, alternatives);
+  }
+  if (!(share > 0.0 && share < 1.0)) {
+    return Undefined{"the share of right answers is 0 or 1"};
+  }
+  if (task == DiscriminationTask::kOneInterval) {
+    return std::numbers::sqrt2 * *forced_choice_d_prime(share, 2);
+  }
+  constexpr double kMost = 30.0;
+  if (share <= task_share(task, 0.0, alternatives)) {
+    return 0.0;
+  }
+  if (share >= task_share(task, kMost, alternatives)) {
+    return Undefined{"the share of right answers is too close to 1"};
+  }
+  return find_root([&](double d) { return task_share(task, d, alternatives) - share; }, 0.0, kMost);
 }
 
 }  // namespace haptrial::analysis

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "analysis/statistics/base/defined.h"
 
 namespace haptrial::analysis {
@@ -39,12 +41,6 @@ struct Detection {
 Defined<Detection> detection(const DetectionCounts& counts, RateCorrection correction,
                              double level = 0.95);
 
-/// Two-alternative forced choice: `first` and `second` say where the signal was. Hits are answers
-/// "first" to a signal in the first interval, false alarms answers "first" to one in the second;
-/// d' = (z(H) - z(F)) / sqrt 2, and the criterion is the bias towards the second interval.
-Defined<Detection> forced_choice_detection(const DetectionCounts& counts, RateCorrection correction,
-                                           double level = 0.95);
-
 /// d' of an observer without bias who is right in `share` of the trials with m alternatives:
 ///
 ///     share = integral of phi(x - d') Phi(x)^(m - 1) dx      (m = 2: d' = sqrt 2 z(share))
@@ -54,5 +50,25 @@ Defined<Detection> forced_choice_detection(const DetectionCounts& counts, RateCo
 Defined<double> forced_choice_d_prime(double share, int alternatives);
 /// The share itself.
 double forced_choice_share(double d_prime, int alternatives);
+
+/// The question about the stimuli of a trial. The d' of each task is that of an observer without
+/// bias.
+enum class DiscriminationTask : std::uint8_t {
+  kForcedChoice,   // which of m stimuli it was: forced_choice_share()
+  kOneInterval,    // which of two stimuli was presented alone: d' is the distance between them
+  kOddity,         // which of three differs from the two others, by their differences
+  kAbx,            // whether the third is as the first or as the second, by their differences
+  kSameDifferent,  // whether two are the same, from independent observations
+};
+
+/// Share of right answers.
+/// @param d_prime       at least 0 except in a forced choice and one interval
+/// @param alternatives  of a forced choice, 2 to 1000
+/// Source: Macmillan and Creelman 2005, Detection Theory, chapters 7, 9 and 10.
+double task_share(DiscriminationTask task, double d_prime, int alternatives);
+/// The d' with a share of right answers; 0 for a share below chance, except in a forced choice and
+/// one interval.
+/// Undefined unless 0 < share < 1.
+Defined<double> task_d_prime(DiscriminationTask task, double share, int alternatives);
 
 }  // namespace haptrial::analysis

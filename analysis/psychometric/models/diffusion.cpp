@@ -15,7 +15,7 @@
 
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/minimum.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "analysis/psychometric/models/binomial_model.h"
 #include "analysis/psychometric/models/detection.h"
-#include "analysis/psychometric/models/fisher_scoring.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "analysis/psychometric/models/fisher_scoring.h"
+#include "analysis/psychometric/models/binomial_model.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 

@@ -12,7 +12,7 @@
 #include "analysis/statistics/base/descriptive.h"
 #include "core/questions/scores.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/page_answer.h"
+#include "core/record/rows/answer_rows.h"
 
 namespace haptrial::analysis::trials {
 namespace {

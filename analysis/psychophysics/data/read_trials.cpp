@@ -5,11 +5,10 @@
 
 #include "core/base/parallel.h"
 #include "core/record/read/marked_trials.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/read/trial_progress.h"
-#include "core/record/rows/moving_body_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/rows/touched_body_row.h"
 #include "core/record/rows/trial_rows.h"
 
 namespace haptrial::analysis::trials {

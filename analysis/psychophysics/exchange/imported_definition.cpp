@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "analysis/psychophysics/exchange/field_text.h"
+#include "analysis/psychophysics/exchange/trial_columns.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/base/toml_text.h"

@@ -13,7 +13,7 @@
 
 #include "analysis/files/csv.h"
 #include "analysis/files/sha256.h"
-#include "analysis/psychophysics/exchange/field_text.h"
+#include "analysis/psychophysics/exchange/trial_columns.h"
 #include "core/base/alike_names.h"
 #include "core/base/counted.h"
 #include "core/base/error.h"

@@ -7,12 +7,11 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/psychophysics/exchange/field_text.h"
 #include "analysis/psychophysics/exchange/imported_definition.h"
+#include "analysis/psychophysics/exchange/trial_columns.h"
 #include "core/base/error.h"
 #include "core/record/hdf5/session_writer.h"
-#include "core/record/read/imported.h"
-#include "core/record/rows/condition_label.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/rows/trial_rows.h"
 
 namespace haptrial::analysis::trials {

@@ -8,16 +8,15 @@
 
 #include "analysis/psychometric/fit/fitted_function.h"
 #include "analysis/psychometric/fit/likelihood_fit.h"
+#include "analysis/psychometric/models/detection.h"
 #include "analysis/psychometric/models/diffusion.h"
-#include "analysis/psychometric/models/discrimination_task.h"
 #include "analysis/psychophysics/fit/cue_plan.h"
-#include "analysis/psychophysics/fit/paired_plan.h"
-#include "analysis/psychophysics/fit/produced_plan.h"
-#include "analysis/psychophysics/fit/pursuit_plan.h"
+#include "analysis/psychophysics/fit/method_plans.h"
 #include "analysis/psychophysics/fit/reaching_plan.h"
 #include "analysis/statistics/design/analysis_plan.h"
 
 namespace haptrial {
+
 class Table;
 }
 

@@ -19,7 +19,7 @@ bool grows_with_force(const std::string& unit);
 Estimated as_measured(const Estimated& commanded, const device::Certificate& certificate);
 
 /// The levels as commanded and as measured; no table if no gain is stated. The certificate itself
-/// is a finding of every protocol (analysis/exchange/certificate_findings.h).
+/// is a finding of every protocol (analysis/exchange/own_findings.cpp).
 FindingList apparatus_findings(const TrialsResult& result);
 
 }  // namespace haptrial::analysis::trials

@@ -89,6 +89,108 @@ Figure quantity_figure(const TrialsResult& result, const Quantity& q) {
   return figure;
 }
 
+/// A quantity by condition, participants beside the mean: "by-condition-threshold".
+std::vector<Figure> quantity_figures(const TrialsResult& result) {
+  std::vector<Figure> figures;
+  for (const Quantity& q : result.quantities) {
+    if (!q.table.cells.empty() && q.name != "log_width") {
+      figures.push_back(quantity_figure(result, q));
+    }
+  }
+  return figures;
+}
+
+/// Magnitudes over levels, both logarithmic: "magnitudes".
+std::vector<Figure> magnitude_figures(const TrialsResult& result) {
+  Figure figure = new_figure(result, "magnitudes", "Magnitudes over levels",
+                             "Logarithm (base 10) of " + level_label(result),
+                             "Logarithm (base 10) of the magnitude");
+  std::size_t conditions = 0;
+  for (const MagnitudeCondition& one : result.magnitudes) {
+    if (!one.law) {
+      continue;
+    }
+    const std::string name = one.condition.empty() ? "geometric mean" : one.condition;
+    Look look = look_of(conditions++);
+    Series means{name, Mark::kBars, look};
+    Series line{fmt::format("exponent {:.2f}", one.law->exponent), Mark::kLine, look};
+    for (const MagnitudeLevel& level : one.law->levels) {
+      means.x.push_back(std::log10(level.measured));
+      means.y.push_back(std::log10(level.mean));
+      means.low.push_back(std::log10(level.low));
+      means.high.push_back(std::log10(level.high));
+      line.x.push_back(means.x.back());
+      line.y.push_back(std::log10(one.law->constant) + one.law->exponent * means.x.back());
+    }
+    figure.alt += fmt::format("{}{}: exponent {:.2f}", figure.alt.empty() ? "" : "; ", name,
+                              one.law->exponent);
+    figure.series.push_back(std::move(means));
+    figure.series.push_back(std::move(line));
+  }
+  figure.caption =
+      "Geometric means over participants after modulus equalisation, with 95 % intervals over "
+      "participants; lines have the mean of the participants' exponents.";
+  return figure.series.empty() ? std::vector<Figure>{} : std::vector{figure};
+}
+
+/// ROC curves of ratings: "roc".
+std::vector<Figure> roc_figures(const TrialsResult& result) {
+  Figure figure = new_figure(result, "roc", "ROC curves of the ratings", "Share of noise trials",
+                             "Share of signal trials");
+  std::map<std::string, std::size_t> conditions;
+  for (const DetectedCondition& one : result.detected) {
+    if (!one.roc) {
+      continue;
+    }
+    const auto [at, fresh] = conditions.emplace(one.condition, conditions.size());
+    Look look = look_of(at->second);
+    look.width = 1.2;
+    const std::string label = one.condition.empty() ? "participant" : one.condition;
+    Series curve{fresh ? label : "", Mark::kLine, look};
+    for (const RocPoint& point : one.roc->curve) {
+      curve.x.push_back(point.false_positives);
+      curve.y.push_back(point.true_positives);
+    }
+    figure.series.push_back(std::move(curve));
+  }
+  if (figure.series.empty()) {
+    return {};
+  }
+  figure.series.push_back(
+      {"", Mark::kLine, {palette::kGrey, palette::kShort, 7, 1.5, 1.0}, {0.0, 1.0}, {0.0, 1.0}});
+  figure.x_range = Range{0.0, 1.0};
+  figure.y_range = Range{0.0, 1.02};
+  figure.height = 0.75;
+  figure.caption = "A curve for each participant. The diagonal is chance.";
+  figure.alt = "ROC curves; their areas are in the table.";
+  return {figure};
+}
+
+/// Reaction times of each participant: "reaction-times".
+std::vector<Figure> reaction_figures(const TrialsResult& result) {
+  Figure figure =
+      new_figure(result, "reaction-times", "Reaction times", "Participant", "Reaction time (s)");
+  Series series{"median, lower and upper quartile", Mark::kBars, look_of(0)};
+  const auto times = times_of(result);
+  const std::size_t named_every = 1 + times.size() / 16;  // names beside each other have room
+  std::size_t place = 0;
+  for (const auto& [participant, own] : times) {
+    if (place++ % named_every == 0) {
+      figure.x_names.emplace_back(static_cast<double>(place), participant);
+    }
+    add_times(series, static_cast<double>(place), own);
+  }
+  if (series.x.empty()) {
+    return {};
+  }
+  figure.x_range = Range{0.5, static_cast<double>(place) + 0.5};
+  figure.y_range = Range{0.0, 1.1 * *std::max_element(series.high.begin(), series.high.end())};
+  figure.series.push_back(std::move(series));
+  figure.caption = "Medians and quartiles of the reaction times of each participant.";
+  figure.alt = "Reaction times of each participant.";
+  return {figure};
+}
+
 }  // namespace
 
 Look look_of(std::size_t index) {
@@ -131,104 +233,6 @@ std::string level_label(const TrialsResult& result) {
 std::span<const ParticipantTrials> drawn_participants(const TrialsResult& result) {
   const std::span<const ParticipantTrials> all(result.participants);
   return all.first(std::min(all.size(), kMostDrawn));
-}
-
-std::vector<Figure> quantity_figures(const TrialsResult& result) {
-  std::vector<Figure> figures;
-  for (const Quantity& q : result.quantities) {
-    if (!q.table.cells.empty() && q.name != "log_width") {
-      figures.push_back(quantity_figure(result, q));
-    }
-  }
-  return figures;
-}
-
-std::vector<Figure> magnitude_figures(const TrialsResult& result) {
-  Figure figure = new_figure(result, "magnitudes", "Magnitudes over levels",
-                             "Logarithm (base 10) of " + level_label(result),
-                             "Logarithm (base 10) of the magnitude");
-  std::size_t conditions = 0;
-  for (const MagnitudeCondition& one : result.magnitudes) {
-    if (!one.law) {
-      continue;
-    }
-    const std::string name = one.condition.empty() ? "geometric mean" : one.condition;
-    Look look = look_of(conditions++);
-    Series means{name, Mark::kBars, look};
-    Series line{fmt::format("exponent {:.2f}", one.law->exponent), Mark::kLine, look};
-    for (const MagnitudeLevel& level : one.law->levels) {
-      means.x.push_back(std::log10(level.measured));
-      means.y.push_back(std::log10(level.mean));
-      means.low.push_back(std::log10(level.low));
-      means.high.push_back(std::log10(level.high));
-      line.x.push_back(means.x.back());
-      line.y.push_back(std::log10(one.law->constant) + one.law->exponent * means.x.back());
-    }
-    figure.alt += fmt::format("{}{}: exponent {:.2f}", figure.alt.empty() ? "" : "; ", name,
-                              one.law->exponent);
-    figure.series.push_back(std::move(means));
-    figure.series.push_back(std::move(line));
-  }
-  figure.caption =
-      "Geometric means over participants after modulus equalisation, with 95 % intervals over "
-      "participants; lines have the mean of the participants' exponents.";
-  return figure.series.empty() ? std::vector<Figure>{} : std::vector{figure};
-}
-
-std::vector<Figure> roc_figures(const TrialsResult& result) {
-  Figure figure = new_figure(result, "roc", "ROC curves of the ratings", "Share of noise trials",
-                             "Share of signal trials");
-  std::map<std::string, std::size_t> conditions;
-  for (const DetectedCondition& one : result.detected) {
-    if (!one.roc) {
-      continue;
-    }
-    const auto [at, fresh] = conditions.emplace(one.condition, conditions.size());
-    Look look = look_of(at->second);
-    look.width = 1.2;
-    const std::string label = one.condition.empty() ? "participant" : one.condition;
-    Series curve{fresh ? label : "", Mark::kLine, look};
-    for (const RocPoint& point : one.roc->curve) {
-      curve.x.push_back(point.false_positives);
-      curve.y.push_back(point.true_positives);
-    }
-    figure.series.push_back(std::move(curve));
-  }
-  if (figure.series.empty()) {
-    return {};
-  }
-  figure.series.push_back(
-      {"", Mark::kLine, {palette::kGrey, palette::kShort, 7, 1.5, 1.0}, {0.0, 1.0}, {0.0, 1.0}});
-  figure.x_range = Range{0.0, 1.0};
-  figure.y_range = Range{0.0, 1.02};
-  figure.height = 0.75;
-  figure.caption = "A curve for each participant. The diagonal is chance.";
-  figure.alt = "ROC curves; their areas are in the table.";
-  return {figure};
-}
-
-std::vector<Figure> reaction_figures(const TrialsResult& result) {
-  Figure figure =
-      new_figure(result, "reaction-times", "Reaction times", "Participant", "Reaction time (s)");
-  Series series{"median, lower and upper quartile", Mark::kBars, look_of(0)};
-  const auto times = times_of(result);
-  const std::size_t named_every = 1 + times.size() / 16;  // names beside each other have room
-  std::size_t place = 0;
-  for (const auto& [participant, own] : times) {
-    if (place++ % named_every == 0) {
-      figure.x_names.emplace_back(static_cast<double>(place), participant);
-    }
-    add_times(series, static_cast<double>(place), own);
-  }
-  if (series.x.empty()) {
-    return {};
-  }
-  figure.x_range = Range{0.5, static_cast<double>(place) + 0.5};
-  figure.y_range = Range{0.0, 1.1 * *std::max_element(series.high.begin(), series.high.end())};
-  figure.series.push_back(std::move(series));
-  figure.caption = "Medians and quartiles of the reaction times of each participant.";
-  figure.alt = "Reaction times of each participant.";
-  return {figure};
 }
 
 std::vector<Figure> trials_figures(const TrialsResult& result) {

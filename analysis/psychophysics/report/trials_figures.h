@@ -30,17 +30,9 @@ std::vector<Figure> panel_figures(const TrialsResult& result);
 std::vector<Figure> track_figures(const TrialsResult& result);
 /// Each participant's functions with data and band: "function-P01".
 std::vector<Figure> function_figures(const TrialsResult& result);
-/// A quantity by condition, participants beside the mean: "by-condition-threshold".
-std::vector<Figure> quantity_figures(const TrialsResult& result);
 /// Weights and standard deviations of two cues, observed and predicted: "cues-weights",
 /// "cues-deviations".
 std::vector<Figure> cue_figures(const TrialsResult& result);
-/// Magnitudes over levels, both logarithmic: "magnitudes".
-std::vector<Figure> magnitude_figures(const TrialsResult& result);
-/// ROC curves of ratings: "roc".
-std::vector<Figure> roc_figures(const TrialsResult& result);
-/// Reaction times of each participant: "reaction-times".
-std::vector<Figure> reaction_figures(const TrialsResult& result);
 
 /// Learning curves, and speeds and paths of the first and last cycle of each block:
 /// "learning-curve", "force-compensation", "speed-profiles", "trajectories-BLOCK".

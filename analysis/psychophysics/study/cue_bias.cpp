@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/psychometric/fit/answer_draws.h"
+#include "analysis/psychometric/fit/bootstrap_fit.h"
 #include "analysis/psychometric/models/cue_combination.h"
 #include "core/base/random.h"
 

@@ -16,7 +16,7 @@
 #include "analysis/statistics/design/wording.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/target_row.h"
+#include "core/record/rows/device_rows.h"
 
 namespace haptrial::analysis::trials {
 namespace {

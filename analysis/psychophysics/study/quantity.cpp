@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "analysis/statistics/design/changes.h"
+#include "analysis/statistics/design/compared_sides.h"
 #include "core/base/error.h"
 
 namespace haptrial::analysis::trials {

@@ -13,7 +13,6 @@
 #include "analysis/psychophysics/fit/track_estimate.h"
 #include "analysis/psychophysics/study/cue_study.h"
 #include "analysis/psychophysics/study/detected.h"
-#include "analysis/psychophysics/study/hierarchical.h"
 #include "analysis/psychophysics/study/magnitudes.h"
 #include "analysis/psychophysics/study/population.h"
 #include "analysis/psychophysics/study/quantity.h"

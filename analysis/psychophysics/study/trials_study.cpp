@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "analysis/psychophysics/study/decision_quantities.h"
+#include "analysis/psychophysics/study/produced_quantities.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 

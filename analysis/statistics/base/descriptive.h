@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "analysis/statistics/base/defined.h"
 
@@ -49,5 +50,16 @@ Defined<MeanInterval> mean_interval(std::span<const double> values, double level
 /// The value below which a fraction of the values lies, linear between order statistics.
 /// Undefined without values or with one that is not finite.
 Defined<double> quantile(std::span<const double> values, double fraction);
+
+/// Ranks of values, in the order given. Values tie where they are equal to the last bit.
+struct Ranks {
+  std::vector<double> ranks;  // from 1; tied values share the mean of their ranks
+  double ties{0.0};           // sum of t³ - t over sets of t tied values; 0 without ties
+
+  bool all_tied() const;
+};
+
+/// Undefined without values or with one that is not finite.
+Defined<Ranks> midranks(std::span<const double> values);
 
 }  // namespace haptrial::analysis

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/statistics/base/incomplete_beta.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/distributions.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -8,21 +8,11 @@
 namespace haptrial::analysis {
 
 /// p values of hypotheses tested together, adjusted, in the order given: a hypothesis is rejected
-/// at level a where its adjusted p is at most a. Each function
+/// at level a where its adjusted p is at most a. Holm's step-down procedure: the chance of any false
+/// rejection stays below a. Never weaker than Bonferroni's.
 /// @throws std::invalid_argument when a value is outside [0, 1] or not a number.
-
-/// Holm's step-down procedure: the chance of any false rejection stays below a. Never weaker than
-/// Bonferroni's.
 /// Source: Holm 1979, Scandinavian Journal of Statistics 6.
 std::vector<double> holm_adjusted(std::span<const double> p_values);
-
-/// Each p times their number: the same promise as Holm's.
-std::vector<double> bonferroni_adjusted(std::span<const double> p_values);
-
-/// The expected share of false rejections among the rejections stays below a, for independent or
-/// positively dependent tests.
-/// Source: Benjamini and Hochberg 1995, Journal of the Royal Statistical Society B 57.
-std::vector<double> benjamini_hochberg_adjusted(std::span<const double> p_values);
 
 /// Holm's p over the tests that are defined, each at its own place.
 template <class Test>

@@ -10,6 +10,7 @@
 #include "analysis/statistics/tests/t_tests.h"
 
 namespace haptrial {
+
 class Table;
 template <class T>
 class Schema;

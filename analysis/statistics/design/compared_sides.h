@@ -1,10 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "analysis/statistics/design/analysis_plan.h"
 #include "analysis/statistics/design/design_sides.h"
+#include "analysis/statistics/design/design_table.h"
 #include "analysis/statistics/tests/bootstrap.h"
 #include "analysis/statistics/tests/permutation.h"
 #include "analysis/statistics/tests/wilcoxon.h"
@@ -48,5 +51,15 @@ std::string name_of_test(const SideTest& test);
 SideTest compared(const DesignTable& table, PlannedTest sides, const Cells& a, const Cells& b,
                   const Resampling& resampling, const TestsBeside& beside = {},
                   const Covariate& covariate = {});
+
+/// How much participants changed from one level of a factor to its other levels, such as from a
+/// pre-test to a post-test: the mean of each participant's values under each combination of levels,
+/// less the mean under the same combination at the baseline. A comparison of these changes between
+/// groups is the interaction of group and factor.
+/// @param factor  place among the levels
+/// @returns an observation for each participant and combination away from the baseline; none for
+/// participants without values at the baseline
+std::vector<Observation> changes_from(std::span<const Observation> observations, std::size_t factor,
+                                      const std::string& baseline);
 
 }  // namespace haptrial::analysis

@@ -8,7 +8,6 @@
 #include "analysis/statistics/variance/anova.h"
 #include "analysis/statistics/variance/multifactor_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
-#include "analysis/statistics/variance/welch_anova.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "analysis/document/number.h"
+
 namespace haptrial::analysis {
 namespace {
 
@@ -315,6 +317,10 @@ std::string capitalized(std::string text) {
 std::string counted(std::size_t count, const std::string& noun) {
   const char* plural = noun.ends_with("s") ? "es" : "s";
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : plural);
+}
+
+std::string interval_word(const Defined<MeanInterval>& m) {
+  return m ? fmt::format("{} [{}, {}]", number(m->mean), number(m->low), number(m->high)) : "–";
 }
 
 }  // namespace haptrial::analysis

@@ -63,4 +63,7 @@ std::string capitalized(std::string text);
 /// "1 trial", "2 passes".
 std::string counted(std::size_t count, const std::string& noun);
 
+/// "3.438 [3.182, 3.693]" or "–", for tables.
+std::string interval_word(const Defined<MeanInterval>& interval);
+
 }  // namespace haptrial::analysis

@@ -8,7 +8,6 @@
 
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/ranks.h"
 #include "analysis/statistics/relation/centered_design.h"
 
 namespace haptrial::analysis {
@@ -138,6 +137,13 @@ Defined<Correlation> spearman_correlation(std::span<const double> a, std::span<c
     p = ra.ties + rb.ties > 0.0 ? p_of_t(r, n) : p_of_series(r, n);
   }
   return Correlation{r, p, a.size(), fisher(r, n, 1.0 + 0.5 * r * r, level)};
+}
+
+Coefficient coefficient(double estimate, double error, double df, double level) {
+  const double t = estimate / error;
+  const double half = t_quantile(0.5 * (1.0 + level), df) * error;
+  const double p = std::min(1.0, 2.0 * t_upper_tail(std::abs(t), df));
+  return {estimate, error, df, t, p, estimate - half, estimate + half};
 }
 
 }  // namespace haptrial::analysis

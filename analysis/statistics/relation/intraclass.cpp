@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

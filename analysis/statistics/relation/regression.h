@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/statistics/base/defined.h"
-#include "analysis/statistics/relation/coefficient.h"
+#include "analysis/statistics/relation/correlation.h"
 
 namespace haptrial::analysis {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/solvers.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -68,4 +68,37 @@ struct EquivalenceTest {
 /// @param test  of the same difference.  @param bound  > 0
 EquivalenceTest equivalence_test(const TTest& test, double bound);
 
+/// Yuen's test of trimmed means (Yuen 1974, Biometrika 61), which a few extreme values hardly
+/// move. Differences and intervals are those of trimmed means.
+/// @param share  of the values that each tail is trimmed by, in [0, 0.5)
+
+/// Different people, with Welch's degrees of freedom.
+/// Undefined with fewer than two values left in either sample, no variance in both, or a value that
+/// is not finite.
+Defined<TTest> yuen_test(std::span<const double> a, std::span<const double> b, double share,
+                         Tail tail, double level = 0.95);
+
+/// Pairs: each sample is trimmed by itself (Wilcox 2012, Introduction to Robust Estimation).
+/// Undefined with fewer than two pairs left, no variance, or a value that is not finite.
+/// @throws std::invalid_argument when the lengths differ.
+Defined<TTest> paired_yuen_test(std::span<const double> a, std::span<const double> b, double share,
+                                Tail tail, double level = 0.95);
+
+/// Scale r of the prior of the effect size, Cauchy(0, r): "medium" of Rouder et al. 2009.
+inline constexpr double kMediumPrior = 0.70710678118654752;
+
+/// The Bayes factor of a t-test for an effect against none (Rouder, Speckman, Sun, Morey and
+/// Iverson 2009, Psychonomic Bulletin & Review 16):
+///
+///     BF = ∫ Cauchy(δ; r) f(t; df, δ sqrt(N)) dδ / f(t; df, 0)
+///
+/// with f the density of the noncentral t distribution and δ the effect size in standard
+/// deviations; a directed test has the half of the prior on its side, doubled (Morey and Rouder
+/// 2011). Relative error below 1e-6.
+/// @param t  its sign is that of mean(a) - mean(b); finite
+/// @param df  > 0
+/// @param n  pairs; of two samples of different people n_a n_b / (n_a + n_b) > 0
+/// Undefined where the integral is not finite.
+Defined<double> bayes_factor(double t, double df, double n, Tail tail, double scale = kMediumPrior);
+
 }  // namespace haptrial::analysis

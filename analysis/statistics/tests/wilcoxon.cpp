@@ -8,7 +8,6 @@
 
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/ranks.h"
 
 namespace haptrial::analysis {
 namespace {

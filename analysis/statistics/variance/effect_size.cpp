@@ -29,23 +29,6 @@ double two_sample_scale(std::size_t a, std::size_t b) {
   return std::sqrt(1.0 / static_cast<double>(a) + 1.0 / static_cast<double>(b));
 }
 
-Defined<EffectSize> eta_share(double value, double f, double df_effect, double df_error,
-                              double level) {
-  const auto limits = noncentral_f_limits(f, df_effect, df_error, level);
-  if (!limits) {
-    return Undefined{limits.because()};
-  }
-  const double cases = df_effect + df_error + 1.0;
-  return EffectSize{value, limits->low / (limits->low + cases),
-                    limits->high / (limits->high + cases), level};
-}
-
-bool usable(double f, double df_effect, double df_error) {
-  return std::isfinite(f) && f >= 0.0 && df_effect > 0.0 && df_error > 0.0;
-}
-
-const char* const kNoF = "there is no F to take it from";
-
 }  // namespace
 
 Defined<EffectSize> cohens_d(std::span<const double> a, std::span<const double> b, double level) {
@@ -107,27 +90,20 @@ double hedges_correction(double df) {
 }
 
 Defined<EffectSize> partial_eta_squared(double f, double df_effect, double df_error, double level) {
-  if (!usable(f, df_effect, df_error)) {
-    return Undefined{kNoF};
+  if (!(std::isfinite(f) && f >= 0.0 && df_effect > 0.0 && df_error > 0.0)) {
+    return Undefined{"there is no F to take it from"};
   }
-  return eta_share(f * df_effect / (f * df_effect + df_error), f, df_effect, df_error, level);
-}
-
-Defined<EffectSize> partial_omega_squared(double f, double df_effect, double df_error,
-                                          double level) {
-  if (!usable(f, df_effect, df_error)) {
-    return Undefined{kNoF};
+  const auto limits = noncentral_f_limits(f, df_effect, df_error, level);
+  if (!limits) {
+    return Undefined{limits.because()};
   }
-  const double value = (f - 1.0) * df_effect / (f * df_effect + df_error + 1.0);
-  return eta_share(std::max(0.0, value), f, df_effect, df_error, level);
+  const double cases = df_effect + df_error + 1.0;
+  return EffectSize{f * df_effect / (f * df_effect + df_error), limits->low / (limits->low + cases),
+                    limits->high / (limits->high + cases), level};
 }
 
 Defined<EffectSize> eta_squared(const Anova& anova, double level) {
   return partial_eta_squared(anova.f, anova.df_between, anova.df_within, level);
-}
-
-Defined<EffectSize> omega_squared(const Anova& anova, double level) {
-  return partial_omega_squared(anova.f, anova.df_between, anova.df_within, level);
 }
 
 Defined<double> generalized_eta_squared(double squares, double measured, bool manipulated) {

@@ -53,21 +53,15 @@ double hedges_correction(double df);
 Defined<EffectSize> partial_eta_squared(double f, double df_effect, double df_error,
                                         double level = kProportionLevel);
 
-/// The same share with less bias, at least 0; the interval is that of partial eta squared.
-Defined<EffectSize> partial_omega_squared(double f, double df_effect, double df_error,
-                                          double level = kProportionLevel);
-
 /// In a one-way design the partial share is the share of all variance.
 Defined<EffectSize> eta_squared(const Anova& anova, double level = kProportionLevel);
-Defined<EffectSize> omega_squared(const Anova& anova, double level = kProportionLevel);
 
 /// The share of an effect that compares between designs: squares / (squares + measured), or
 /// squares / measured where the effect's factor was itself measured rather than manipulated.
 /// @param measured  sum of the squares of every source that holds differences between people:
 ///                  participants, their interactions, errors, and measured factors.
-/// Its interval is a bootstrap over participants (generalized_eta.h). Undefined without squares.
-/// Source: Olejnik and Algina 2003, Psychological Methods 8; Bakeman 2005, Behavior Research
-/// Methods 37.
+/// Undefined without squares. Source: Olejnik and Algina 2003, Psychological Methods 8; Bakeman
+/// 2005, Behavior Research Methods 37.
 Defined<double> generalized_eta_squared(double squares, double measured, bool manipulated = true);
 
 }  // namespace haptrial::analysis

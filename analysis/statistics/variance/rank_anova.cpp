@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/ranks.h"
 #include "analysis/statistics/variance/within_effect.h"
 
 namespace haptrial::analysis {

@@ -3,16 +3,40 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <numbers>
 #include <utility>
 
-#include "core/base/definition/labels.h"
 #include "core/base/error.h"
 
 namespace haptrial {
+namespace {
+
+// Numbers of words lie where no quantity of an experiment does, so that a word never equals one.
+constexpr double kFirstWord = 1e12;
+
+}  // namespace
+
+double Labels::number_of(std::string_view word) {
+  const auto found = std::ranges::find(words_, word);
+  const auto place = found - words_.begin();
+  if (found == words_.end()) {
+    words_.emplace_back(word);
+  }
+  return kFirstWord + static_cast<double>(place);
+}
+
+std::optional<std::string> Labels::word_of(double number) const {
+  const double place = number - kFirstWord;
+  if (!(place >= 0.0 && place < static_cast<double>(words_.size()))) {
+    return std::nullopt;
+  }
+  return words_[static_cast<std::size_t>(place)];
+}
+
 namespace {
 
 constexpr const char* kNameCharacters =
@@ -135,8 +159,6 @@ std::vector<std::string> Expression::names() const {
   }
   return names;
 }
-
-bool Expression::is_constant() const { return !formula_ || formula_->values.empty(); }
 
 double Expression::value(const std::function<double(const std::string&)>& value_of) const {
   if (!formula_) {

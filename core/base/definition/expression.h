@@ -2,11 +2,25 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptrial {
+
+/// The words of a definition, each with a number: formulas compute with numbers only. A word gets
+/// its number when it is first named.
+class Labels {
+ public:
+  double number_of(std::string_view word);
+  /// The word of a number; nothing if there is none.
+  std::optional<std::string> word_of(double number) const;
+
+ private:
+  std::vector<std::string> words_;
+};
 
 class Labels;
 
@@ -33,7 +47,6 @@ class Expression {
   const std::string& text() const { return text_; }
   /// The variables of the formula in alphabetical order, without $; none of a constant.
   std::vector<std::string> names() const;
-  bool is_constant() const;
   /// @param value_of  of a variable; called once for each of names()
   /// @throws InputError if the result is not finite
   double value(const std::function<double(const std::string& name)>& value_of) const;

@@ -43,8 +43,7 @@ std::vector<std::uint8_t> sampled(const BoneModel& truth, std::size_t of, std::u
 }
 
 bool is_in(const BoneModel& mask, int i, int j, int k) {
-  const auto& size = mask.grid.size;
-  return i >= 0 && j >= 0 && k >= 0 && i < size[0] && j < size[1] && k < size[2] &&
+  return mask.grid.contains({i, j, k}) &&
          mask.labels[mask.grid.index(i, j, k)] == StructureMasks::kIn;
 }
 

@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "core/base/parallel.h"
-#include "core/bone/atlas/scan_look.h"
+#include "core/bone/atlas/register_ears.h"
 #include "core/bone/atlas/structure_masks.h"
 
 namespace haptrial::bone {

@@ -18,7 +18,6 @@
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/base/scratch_folder.h"
-#include "core/bone/atlas/scan_look.h"
 
 namespace haptrial::bone {
 namespace {

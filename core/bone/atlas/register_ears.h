@@ -33,4 +33,10 @@ std::vector<RegisteredEar> register_ears(const BoneModel& scan, std::span<const 
                                          const RegistrationOptions& options = {},
                                          const geometry::WorkReport& report = {});
 
+/// Whether a CT shows a structure as bone. Soft structures it does not, nor the labyrinth, which
+/// fluid fills.
+inline bool looks_like_bone(const Structure& structure) {
+  return structure.hardness >= 1.0 && structure.name != "bony labyrinth";
+}
+
 }  // namespace haptrial::bone

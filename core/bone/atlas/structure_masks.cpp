@@ -14,16 +14,11 @@ constexpr double kMostVoxels = 250.0;  // that a distance field reaches
 Eigen::AlignedBox3i box_of(const geometry::VoxelGrid& grid, std::span<const std::uint8_t> labels,
                            std::uint8_t label) {
   Eigen::AlignedBox3i box;
-  std::size_t at = 0;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i, ++at) {
-        if (labels[at] == label) {
-          box.extend(Voxel(i, j, k));
-        }
-      }
+  geometry::visit_voxels(grid, [&](const Voxel& voxel, std::size_t at) {
+    if (labels[at] == label) {
+      box.extend(voxel);
     }
-  }
+  });
   return box;
 }
 
@@ -50,12 +45,10 @@ StructureMasks masks_of(const geometry::VoxelGrid& grid,
   if (box.isEmpty()) {
     return masks;
   }
-  const Voxel last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+  const Voxel last = grid.last();
   masks.low = (box.min() - Voxel::Ones()).cwiseMax(0);
   const Voxel extent = (box.max() + Voxel::Ones()).cwiseMin(last) - masks.low + Voxel::Ones();
-  masks.grid = {{extent.x(), extent.y(), extent.z()},
-                grid.centre(masks.low.x(), masks.low.y(), masks.low.z()),
-                grid.spacing};
+  masks.grid = {{extent.x(), extent.y(), extent.z()}, grid.centre(masks.low), grid.spacing};
   for (const auto& labels : fields) {
     BoneModel mask = empty_mask(masks.grid);
     auto to = mask.labels.begin();
@@ -89,14 +82,10 @@ std::vector<float> distances_to(const BoneModel& mask, std::uint8_t label) {
   const DistanceField field(mask, set, reach);
   std::vector<float> distances;
   distances.reserve(mask.grid.count());
-  for (int k = 0; k < mask.grid.size[2]; ++k) {
-    for (int j = 0; j < mask.grid.size[1]; ++j) {
-      for (int i = 0; i < mask.grid.size[0]; ++i) {
-        distances.push_back(static_cast<float>(
-            field.at(Voxel(i, j, k)).value_or(std::numeric_limits<double>::infinity())));
-      }
-    }
-  }
+  geometry::visit_voxels(mask.grid, [&](const Voxel& voxel, std::size_t) {
+    distances.push_back(
+        static_cast<float>(field.at(voxel).value_or(std::numeric_limits<double>::infinity())));
+  });
   return distances;
 }
 

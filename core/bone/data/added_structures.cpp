@@ -12,10 +12,10 @@
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/bone/data/anatomy.h"
-#include "core/bone/data/losses.h"
-#include "core/bone/model/crop.h"
+#include "core/bone/data/volume_source.h"
+#include "core/bone/model/bone_model.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/voxelize.h"
 
 namespace haptrial::bone {
@@ -31,7 +31,7 @@ std::string in_words(const Eigen::AlignedBox3d& box) {
 }
 
 Eigen::AlignedBox3d box_of(const geometry::VoxelGrid& grid) {
-  return {grid.origin, grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1)};
+  return {grid.origin, grid.centre(grid.last())};
 }
 
 /// Label of the bone for each label of the segments.

@@ -8,18 +8,11 @@ namespace {
 
 using geometry::VoxelGrid;
 
-/// Voxel numbers i, j, k of an index.
-std::array<std::int32_t, 3> place_of(const VoxelGrid& grid, std::size_t index) {
-  const auto nx = static_cast<std::size_t>(grid.size[0]);
-  const auto ny = static_cast<std::size_t>(grid.size[1]);
-  return {static_cast<std::int32_t>(index % nx), static_cast<std::int32_t>(index / nx % ny),
-          static_cast<std::int32_t>(index / nx / ny)};
-}
-
 /// Calls visit(index) for the up to 26 neighbours.
 template <class Visit>
 void around(const VoxelGrid& grid, std::size_t index, Visit&& visit) {
-  const auto [i, j, k] = place_of(grid, index);
+  const Eigen::Vector3i middle = grid.voxel(index);
+  const int i = middle.x(), j = middle.y(), k = middle.z();
   for (std::int32_t z = std::max(0, k - 1); z <= std::min(grid.size[2] - 1, k + 1); ++z) {
     for (std::int32_t y = std::max(0, j - 1); y <= std::min(grid.size[1] - 1, j + 1); ++y) {
       for (std::int32_t x = std::max(0, i - 1); x <= std::min(grid.size[0] - 1, i + 1); ++x) {
@@ -79,10 +72,8 @@ std::vector<NearFace> near_face(const Eigen::Vector3i& side) {
 /// over |x| + |y| + |z| of the normal there. Beyond the grid is nothing.
 double outside_of(const BoneModel& model) {
   const VoxelGrid& grid = model.grid;
-  const Eigen::Array3i size(grid.size[0], grid.size[1], grid.size[2]);
   const auto full = [&](const Eigen::Vector3i& v) {
-    return (v.array() >= 0).all() && (v.array() < size).all() &&
-           model.labels[grid.index(v.x(), v.y(), v.z())] != 0;
+    return grid.contains(v) && model.labels[grid.index(v)] != 0;
   };
   double area = 0.0;
   for (int direction = 0; direction < 6; ++direction) {
@@ -92,8 +83,7 @@ double outside_of(const BoneModel& model) {
       if (model.labels[at] == 0) {
         continue;
       }
-      const auto [i, j, k] = place_of(grid, at);
-      const Eigen::Vector3i voxel(i, j, k);
+      const Eigen::Vector3i voxel = grid.voxel(at);
       if (full(voxel + side)) {
         continue;
       }
@@ -123,10 +113,9 @@ BoneSummary summary_of(const BoneModel& model) {
       continue;
     }
     StructureSummary& one = all[model.labels[i]];
-    const auto [x, y, z] = place_of(model.grid, i);
     ++one.voxels;
     one.mean_density += model.density.empty() ? 1.0 : static_cast<double>(model.density[i]);
-    one.box.extend(model.grid.centre(x, y, z));
+    one.box.extend(model.grid.centre(model.grid.voxel(i)));
   }
   const std::array<std::size_t, 256> pieces = count_pieces(model);
   BoneSummary summary;

@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "core/base/random.h"
-#include "core/bone/data/ear_landmarks.h"
 
 namespace haptrial::bone {
 namespace {

@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "core/bone/data/ear_anatomy.h"
-#include "core/bone/data/ear_landmarks.h"
 
 // The outside of a temporal bone, the skull's inside, and the spaces of outer and middle ear.
 

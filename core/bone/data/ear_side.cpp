@@ -17,16 +17,11 @@ struct Middles {
 Middles middles_of(const BoneModel& model) {
   Middles middles;
   middles.sum.fill(Eigen::Vector3d::Zero());
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        const std::uint8_t label = model.labels[at];
-        middles.sum[label] += Eigen::Vector3d(i, j, k);
-        ++middles.count[label];
-      }
-    }
-  }
+  geometry::visit_voxels(model.grid, [&](const Eigen::Vector3i& voxel, std::size_t at) {
+    const std::uint8_t label = model.labels[at];
+    middles.sum[label] += voxel.cast<double>();
+    ++middles.count[label];
+  });
   return middles;
 }
 

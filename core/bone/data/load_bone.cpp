@@ -16,11 +16,10 @@
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
-#include "core/bone/data/losses.h"
 #include "core/bone/data/resample.h"
 #include "core/bone/data/segments.h"
 #include "core/bone/data/volume_source.h"
-#include "core/bone/model/crop.h"
+#include "core/bone/model/bone_model.h"
 
 namespace haptrial::bone {
 namespace fs = std::filesystem;
@@ -129,8 +128,7 @@ void crop_plan(const Import& job, Plan& plan) {
   plan.grid = grid_within(whole, *job.options.crop);
   if (plan.grid.count() == 0) {
     const Eigen::Vector3d low = 1e3 * whole.origin;
-    const Eigen::Vector3d high =
-        1e3 * whole.centre(whole.size[0] - 1, whole.size[1] - 1, whole.size[2] - 1);
+    const Eigen::Vector3d high = 1e3 * whole.centre(whole.last());
     throw InputError(
         fmt::format("{}: the box to crop holds none of its voxels, which span {:.1f} {:.1f} {:.1f} "
                     "to {:.1f} {:.1f} {:.1f} mm",

@@ -48,12 +48,6 @@ double turned(const Vector2d& a, const Vector2d& b, double arc_z, double arc_rad
 
 }  // namespace
 
-std::string_view name_of(BurrForm form) noexcept {
-  constexpr std::array<std::string_view, 6> kNames{"ball", "cylinder", "cone",
-                                                   "pear", "rod",      "blade"};
-  return kNames[static_cast<std::size_t>(form)];
-}
-
 BurrShape::BurrShape(const BurrDimensions& dimensions) : dimensions_(dimensions) {
   check_dimensions(dimensions);
   const BurrDimensions& d = dimensions_;

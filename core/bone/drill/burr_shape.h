@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <numbers>
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace haptrial::bone {
@@ -17,9 +16,6 @@ enum class BurrForm : std::uint8_t {
   kRod,    // a cylinder whose ends are within other parts: a shaft, which pushes by its side only
   kBlade,  // a flat box: x along its width, y across it; a saw's teeth, and the sheet behind them
 };
-/// Name of a form in definitions: "ball", "cylinder", "cone", "pear"; "rod" and "blade" are none of
-/// theirs.
-std::string_view name_of(BurrForm form) noexcept;
 
 /// Volume of a ball over diameter^3.
 inline constexpr double kBallFullness = std::numbers::pi / 6.0;

@@ -7,10 +7,16 @@
 #include <vector>
 
 #include "core/bone/dust/dust_parameters.h"
-#include "core/bone/dust/dust_quad.h"
 #include "core/bone/dust/dust_surroundings.h"
 
 namespace haptrial::bone {
+
+/// A cell of dust to draw as a few grains.
+struct DustQuad {
+  Eigen::Vector3f position{Eigen::Vector3f::Zero()};  // of its middle, in W [m]
+  float size{0.0005F};                                // of the cell [m]
+  float alpha{0.5F};                                  // from 0 to 1
+};
 
 struct DustState;
 
@@ -18,10 +24,10 @@ struct DustState;
 /// each is a whole number of 2^-20 voxels.
 struct DustBalance {
   double deposited{0.0};
-  double lying{0.0};  // in cells, moving or at rest
-  double held{0.0};   // at the burr, for want of room
+  double lying{0.0};      // in cells, moving or at rest
+  double held{0.0};       // at the burr, for want of room
   double suctioned{0.0};  // by a tube, or carried off by water
-  double fallen{0.0};  // out of the region, or of the memory that there may be
+  double fallen{0.0};     // out of the region, or of the memory that there may be
 };
 
 /// Bone dust as amounts in the cells of a hashed grid, without particles. In steps of

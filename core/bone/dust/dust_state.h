@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/bone/dust/dust_bones.h"
 #include "core/bone/dust/dust_grid.h"
 #include "core/bone/dust/dust_parameters.h"
 #include "core/bone/dust/dust_surroundings.h"

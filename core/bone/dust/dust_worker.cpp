@@ -16,12 +16,7 @@ DustWorker::DustWorker(const DustParameters& parameters, Bones bones, double per
   if (!(period > 0.0 && period <= 1.0)) {
     throw std::invalid_argument("DustWorker: the period must be from 0 to 1 s");
   }
-  thread_ = std::thread([this] { run(); });
-}
-
-DustWorker::~DustWorker() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 void DustWorker::deposit(const DustDeposit& deposit) noexcept {
@@ -52,12 +47,12 @@ void DustWorker::settle() noexcept {
 
 void DustWorker::place(const DustTools& tools) noexcept { tools_.write(tools); }
 
-void DustWorker::run() {
+void DustWorker::run(const std::stop_token& stop) {
   using Clock = std::chrono::steady_clock;
   const auto period =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(period_));
   Clock::time_point last = Clock::now();
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     std::this_thread::sleep_until(last + period);
     const Clock::time_point now = Clock::now();
     const double passed = std::chrono::duration<double>(now - last).count();

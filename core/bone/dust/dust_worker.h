@@ -20,10 +20,8 @@ class DustWorker {
   /// outlive the worker.
   using Bones = std::function<void(std::vector<DustBone>&)>;
 
-  /// Starts the thread. @param period  of its rounds > 0 [s]
+  /// @param period  of the thread's rounds > 0 [s]
   DustWorker(const DustParameters& parameters, Bones bones, double period = 0.01);
-  /// Stops it.
-  ~DustWorker();
   DustWorker(const DustWorker&) = delete;
   DustWorker& operator=(const DustWorker&) = delete;
 
@@ -42,7 +40,7 @@ class DustWorker {
   DustBalance balance() const;
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
   void round(double dt);
   bool send_rest() noexcept;
 
@@ -59,8 +57,7 @@ class DustWorker {
   std::uint64_t shown_version_{0};
   DustBalance shown_balance_;
   std::atomic<std::uint64_t> rounds_{0};
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it ends before what it uses
 };
 
 }  // namespace haptrial::bone

@@ -11,7 +11,7 @@
 #include "core/bone/drill/sight.h"
 #include "core/bone/hint/hint_rows.h"
 #include "core/bone/hint/hint_setup.h"
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 
 namespace haptrial::hint {
 

@@ -40,17 +40,12 @@ std::vector<record::HintRow> SteppedHints::take() {
 }
 
 ThreadedHints::ThreadedHints(std::shared_ptr<Chime> chime) : HintsBeside(std::move(chime)) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-ThreadedHints::~ThreadedHints() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
-
-void ThreadedHints::run() {
+void ThreadedHints::run(const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetween{4};
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     if (work() == 0) {
       std::this_thread::sleep_for(kBetween);
     }

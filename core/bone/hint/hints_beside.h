@@ -83,7 +83,6 @@ class SteppedHints final : public HintsBeside {
 class ThreadedHints final : public HintsBeside {
  public:
   explicit ThreadedHints(std::shared_ptr<Chime> chime);
-  ~ThreadedHints() override;
   void begin(std::unique_ptr<HintWatch> watch) override;
   void end_pass() override;
   void settle() override;
@@ -93,18 +92,17 @@ class ThreadedHints final : public HintsBeside {
   void after_tick(const HintTick& tick) noexcept override { ticks_.push(tick); }
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
   std::size_t work();
 
   realtime::BlockLog<HintTick> ticks_{256, 32};
   realtime::BlockLog<HintVoxel> voxels_{1024, 128};
   std::atomic<std::uint64_t> done_{0};  // ticks
-  std::atomic<bool> stop_{false};
-  std::mutex mutex_;  // of the watch; never taken by the servo thread
+  std::mutex mutex_;                    // of the watch; never taken by the servo thread
   std::unique_ptr<HintWatch> watch_;
   std::vector<HintTick> waiting_;    // the thread's own
   std::vector<HintVoxel> of_ticks_;  // likewise, oldest first
-  std::thread thread_;
+  std::jthread thread_;              // last: it ends before what it uses
 };
 
 }  // namespace haptrial::hint

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -39,5 +40,12 @@ bool has_vital_structures(const BoneModel& model);
 /// @throws std::invalid_argument naming what does not fit together: sizes, labels without a
 /// structure, densities that are not from 0 to 1, density without a label or a label without.
 void check(const BoneModel& model);
+
+/// The voxels of a grid whose centres lie in a box, borders included; a grid without any voxel
+/// where none does.
+geometry::VoxelGrid grid_within(const geometry::VoxelGrid& grid, const Eigen::AlignedBox3d& box);
+
+/// Leaves only what holds bone, with two empty voxels around it, where the grid has them.
+void crop_to_bone(BoneModel& model);
 
 }  // namespace haptrial::bone

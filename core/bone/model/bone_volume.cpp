@@ -31,17 +31,6 @@ std::size_t product(const std::array<std::int32_t, 3>& size) {
          static_cast<std::size_t>(size[2]);
 }
 
-template <class F>
-void for_each_voxel(const geometry::VoxelGrid& grid, F&& f) {
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        f(Voxel(i, j, k), grid.index(i, j, k));
-      }
-    }
-  }
-}
-
 }  // namespace
 
 BoneVolume::BoneVolume(const BoneModel& model)
@@ -55,7 +44,7 @@ BoneVolume::BoneVolume(const BoneModel& model)
       table_[table_index(voxel)] = 1;
     }
   };
-  for_each_voxel(grid_, mark);
+  geometry::visit_voxels(grid_, mark);
   make_room();
   if (!model.density.empty()) {
     originals_.assign(labels_.size(), 0);
@@ -73,7 +62,7 @@ BoneVolume::BoneVolume(const BoneModel& model)
       }
     }
   };
-  for_each_voxel(grid_, fill);
+  geometry::visit_voxels(grid_, fill);
 }
 
 BoneVolume::BoneVolume(const BoneVolume& other, std::span<const Voxel> voxels)

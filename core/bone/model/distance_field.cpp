@@ -75,7 +75,7 @@ class Envelope {
 }  // namespace
 
 DistanceField::DistanceField(const BoneModel& model, const std::vector<bool>& labels, double reach)
-    : spacing_(model.grid.spacing), reach_(reach) {
+    : origin_(model.grid.origin), spacing_(model.grid.spacing), reach_(reach) {
   check(model);
   const double voxels = reach / spacing_;
   if (!(voxels >= 0.0) || voxels > kLargestReach) {
@@ -148,6 +148,61 @@ std::optional<double> DistanceField::at(const Voxel& voxel) const noexcept {
     return std::nullopt;
   }
   return distance;
+}
+
+std::optional<double> DistanceField::linear_at(const Eigen::Vector3d& p_B) const noexcept {
+  const Eigen::Array3d at = (p_B - origin_).array() / spacing_;
+  if (!((at > -1e6) && (at < 1e6)).all()) {
+    return std::nullopt;
+  }
+  const Eigen::Array3i low = at.floor().cast<int>();
+  const Eigen::Array3d share = at - at.floor();
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Array3i up(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+    const auto distance = this->at((low + up).matrix());
+    if (!distance) {
+      return std::nullopt;
+    }
+    sum += *distance * (up == 1).select(share, 1.0 - share).prod();
+  }
+  return sum;
+}
+
+std::vector<std::string> vital_structures(const BoneModel& bone) {
+  std::vector<bool> there(256, false);
+  for (const std::uint8_t label : bone.labels) {
+    there[label] = true;
+  }
+  std::vector<std::string> names;
+  for (std::size_t label = 1; label < bone.structures.size(); ++label) {
+    const Structure& structure = bone.structures[label];
+    if (structure.vital && there[label] &&
+        std::find(names.begin(), names.end(), structure.name) == names.end()) {
+      names.push_back(structure.name);
+    }
+  }
+  return names;
+}
+
+std::vector<bool> labels_named(const BoneModel& bone, const std::string& name) {
+  std::vector<bool> labels(bone.structures.size(), false);
+  for (std::size_t label = 1; label < labels.size(); ++label) {
+    labels[label] = bone.structures[label].name == name;
+  }
+  return labels;
+}
+
+NearestStructure nearest_structure(std::span<const std::shared_ptr<const DistanceField>> fields,
+                                   const Voxel& voxel) noexcept {
+  NearestStructure nearest;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto distance = fields[i]->at(voxel);
+    if (distance && (nearest.structure < 0 || static_cast<float>(*distance) < nearest.distance)) {
+      nearest = {static_cast<std::int32_t>(i), static_cast<float>(*distance)};
+    }
+  }
+  return nearest;
 }
 
 }  // namespace haptrial::bone

@@ -2,7 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "core/bone/model/bone_model.h"
@@ -25,12 +28,33 @@ class DistanceField {
   double reach() const noexcept { return reach_; }        // [m]
   /// [m]; nothing beyond the reach or outside the grid.
   std::optional<double> at(const Voxel& voxel) const noexcept;
+  /// At a place, linear between the centres of voxels; nothing if one of the eight has none.
+  /// @param p_B  in the model's frame [m]
+  std::optional<double> linear_at(const Eigen::Vector3d& p_B) const noexcept;
 
  private:
+  Eigen::Vector3d origin_{Eigen::Vector3d::Zero()};
   double spacing_{1.0};
   double reach_{0.0};
   Eigen::AlignedBox3i box_;             // of the voxels with a distance
   std::vector<std::uint16_t> squares_;  // of the box, x fastest [voxels^2]; 65535: beyond
 };
+
+/// The vital structures of a bone by name, each once, that have voxels; in the order of labels.
+std::vector<std::string> vital_structures(const BoneModel& bone);
+
+/// Whether each label stands for a structure of this name.
+std::vector<bool> labels_named(const BoneModel& bone, const std::string& name);
+
+/// A structure and how far from it a voxel is.
+struct NearestStructure {
+  std::int32_t structure{-1};  // of the fields; -1: none within their reach
+  float distance{0.0F};        // between centres of voxels [m]
+};
+
+/// The nearest of several structures; of equally near ones the first. Any thread.
+/// @param fields  one for each structure
+NearestStructure nearest_structure(std::span<const std::shared_ptr<const DistanceField>> fields,
+                                   const Voxel& voxel) noexcept;
 
 }  // namespace haptrial::bone

@@ -30,7 +30,7 @@ double bone_at(const BoneVolume& volume, const Voxel& voxel, const ThicknessPara
 }
 
 Eigen::Vector3d centre_of(const BoneVolume& volume, const Voxel& voxel) {
-  return volume.grid().centre(voxel.x(), voxel.y(), voxel.z());
+  return volume.grid().centre(voxel);
 }
 
 /// How far bone reaches from a point along a unit direction, at most `limit` [m].

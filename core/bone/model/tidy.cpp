@@ -91,7 +91,7 @@ Tidied keep_largest_part(BoneModel& model) {
   for (const Part& part : flood.loose(volume)) {
     bool any = false;
     for (const Voxel& voxel : part) {
-      const std::size_t at = model.grid.index(voxel.x(), voxel.y(), voxel.z());
+      const std::size_t at = model.grid.index(voxel);
       if (model.structures[model.labels[at]].name != "bone") {
         continue;
       }

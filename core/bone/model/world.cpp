@@ -217,7 +217,6 @@ void BoneWorld::take_crumbs() noexcept {
       amount += static_cast<double>(from.take(offer_.crumbs[i], 1.0F));
     }
     if (whole) {
-      crumbled_ += amount;
       add_event({.kind = WorldEvent::Kind::kCrumb,
                  .piece = offer_.from,
                  .seed = from.voxel_at(offer_.crumbs[begin]),

@@ -153,8 +153,6 @@ class BoneWorld {
   int held() const noexcept { return held_; }  // piece; -1: none
   /// Everything that moves with what is held, one in the making among it.
   PieceSet held_group() const noexcept { return held_group_; }
-  /// The sum of all densities that crumbs had [voxels].
-  double crumbled() const noexcept { return crumbled_; }
 
   /// Fixes a plate to the bone in these voxels: it moves with every piece that holds one of them,
   /// and joins them where they are several.
@@ -250,7 +248,6 @@ class BoneWorld {
   std::atomic<int> plate_count_{0};
   WorldPoses poses_;
   WorldPoses plate_poses_;
-  double crumbled_{0.0};
   int held_{-1};
   Voxel held_voxel_{Voxel::Zero()};
   PieceSet held_group_{0};

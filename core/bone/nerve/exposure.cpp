@@ -10,13 +10,13 @@ NerveEvents IrritatedNerve::step(const Exposure& e, double dt) noexcept {
   const double gain = p_.warming * e.power * std::exp(-away / p_.heat_reach);
   warmth_ += (gain - warmth_ / p_.cooling) * dt;
   const bool works = e.drilling || e.suction;
-  burst_rate_ = works ? p_.bursts * std::exp(-away / p_.reach) *
-                            (1.0 + p_.per_force * e.force + p_.per_speed * e.speed)
-                      : 0.0;
+  const double burst_rate = works ? p_.bursts * std::exp(-away / p_.reach) *
+                                        (1.0 + p_.per_force * e.force + p_.per_speed * e.speed)
+                                  : 0.0;
   const double train_rate = p_.trains * std::max(0.0, warmth_ - p_.harmless);
   NerveEvents events;
   // The same draws each tick, so that what comes later does not hang on what came before.
-  events.burst = random_.uniform() < -std::expm1(-burst_rate_ * dt);
+  events.burst = random_.uniform() < -std::expm1(-burst_rate * dt);
   events.train = random_.uniform() < -std::expm1(-train_rate * dt);
   events.severity = random_.uniform();
   const bool touches = e.distance <= 0.0;

@@ -46,14 +46,11 @@ class IrritatedNerve {
 
   NerveEvents step(const Exposure& exposure, double dt) noexcept;
   double warmth() const noexcept { return warmth_; }  // above the body's [K]
-  /// Bursts a second that the last exposure gives.
-  double burst_rate() const noexcept { return burst_rate_; }
 
  private:
   ExposureParameters p_;
   RandomStream random_;
   double warmth_{0.0};
-  double burst_rate_{0.0};
   bool touched_{false};
 };
 

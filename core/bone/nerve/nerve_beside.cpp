@@ -47,17 +47,12 @@ record::NerveRows SteppedNerves::take() {
 
 ThreadedNerves::ThreadedNerves(MakeNerveSimulation make, double rate, NerveListeners listeners)
     : make_(std::move(make)), rate_(rate), listeners_(std::move(listeners)) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
-ThreadedNerves::~ThreadedNerves() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
-
-void ThreadedNerves::run() {
+void ThreadedNerves::run(const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetween{2};
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     if (work() == 0) {
       std::this_thread::sleep_for(kBetween);
     }

@@ -68,7 +68,6 @@ class ThreadedNerves final : public NerveBeside {
  public:
   /// @param rate  of ticks [Hz]
   ThreadedNerves(MakeNerveSimulation make, double rate, NerveListeners listeners);
-  ~ThreadedNerves() override;
 
   void after_tick(const NerveTick& tick) noexcept override { ticks_.push(tick); }
   bool tone() const noexcept override { return tone_.load(std::memory_order_relaxed); }
@@ -78,7 +77,7 @@ class ThreadedNerves final : public NerveBeside {
   void settle() override;
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
   std::size_t work();
   void follow(const NerveTick& tick, bool heard);
   void speak(bool heard);
@@ -92,14 +91,13 @@ class ThreadedNerves final : public NerveBeside {
   std::atomic<bool> heard_{true};
   std::atomic<bool> tone_{false};
   std::atomic<std::uint64_t> done_{0};  // ticks
-  std::atomic<bool> stop_{false};
-  std::mutex mutex_;  // of rows_; never taken by the servo thread
+  std::mutex mutex_;                    // of rows_; never taken by the servo thread
   record::NerveRows rows_;
   // The thread's own.
   std::unique_ptr<NerveSimulation> simulation_;
   std::vector<MonitorColumn> column_;
   std::uint64_t in_column_{0};  // ticks
-  std::thread thread_;
+  std::jthread thread_;         // last: it ends before what it uses
 };
 
 /// Whether a tone of any channel is to be heard.

@@ -49,8 +49,7 @@ std::vector<bool> labels_of(const bone::BoneModel& model, const std::string& str
 void check_curve(const bone::BoneModel& model, const WatchedNerve& nerve) {
   const geometry::VoxelGrid& grid = model.grid;
   const Eigen::Vector3d low = kMm * grid.centre(0, 0, 0);
-  const Eigen::Vector3d high =
-      kMm * grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+  const Eigen::Vector3d high = kMm * grid.centre(grid.last());
   for (std::size_t i = 0; i < nerve.curve.size(); ++i) {
     const Eigen::Vector3d point = kMm * nerve.curve[i];
     if ((point.array() < low.array()).any() || (point.array() > high.array()).any()) {
@@ -83,38 +82,23 @@ float to_curve(const WatchedNerve& nerve, const Eigen::Vector3d& p_B) noexcept {
 
 NerveDistances::NerveDistances(const bone::BoneModel& model,
                                const std::vector<WatchedNerve>& nerves)
-    : grid_(model.grid), nerves_(nerves) {
+    : spacing_(model.grid.spacing), nerves_(nerves) {
   for (const WatchedNerve& nerve : nerves_) {
     fields_.emplace_back();
     if (!nerve.curve.empty()) {
       check_curve(model, nerve);
     } else {
       fields_.back().emplace(model, labels_of(model, nerve.name),
-                             std::min(kReach, kMostVoxels * grid_.spacing));
+                             std::min(kReach, kMostVoxels * spacing_));
     }
   }
 }
 
-/// Distance to a structure, linear between the centres of voxels. The nerve's surface is half a
-/// voxel before the centre of its outermost one.
+/// The nerve's surface is half a voxel before the centre of its outermost one.
 float NerveDistances::to_structure(const bone::DistanceField& field,
                                    const Eigen::Vector3d& p_B) const noexcept {
-  const Eigen::Array3d at = (p_B - grid_.origin).array() / grid_.spacing;
-  if (!((at > -1e6) && (at < 1e6)).all()) {
-    return kFar;
-  }
-  const Eigen::Array3i low = at.floor().cast<int>();
-  const Eigen::Array3d share = at - at.floor();
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Array3i up(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
-    const auto distance = field.at((low + up).matrix());
-    if (!distance) {
-      return kFar;
-    }
-    sum += *distance * (up == 1).select(share, 1.0 - share).prod();
-  }
-  return static_cast<float>(sum - 0.5 * grid_.spacing);
+  const std::optional<double> distance = field.linear_at(p_B);
+  return distance ? static_cast<float>(*distance - 0.5 * spacing_) : kFar;
 }
 
 NerveDistances::Distances NerveDistances::at(const Eigen::Vector3d& p_B) const noexcept {

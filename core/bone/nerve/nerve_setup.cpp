@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/base/definition/schema.h"
-#include "core/bone/nerve/threshold_search.h"
+#include "core/bone/nerve/stimulator.h"
 
 namespace haptrial::nerve {
 namespace {

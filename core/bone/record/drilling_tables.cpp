@@ -1,6 +1,6 @@
 #include "core/bone/record/drilling_tables.h"
 
-#include "core/bone/record/turn_columns.h"
+#include "core/bone/record/tool_rows.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::record {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "core/bone/model/bone_model.h"
-#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/drilling_tables.h"
 
 namespace haptrial::bone {
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +12,8 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/region/region_setup.h"
 #include "core/bone/simulator/soft_tissue.h"
+#include "core/realtime/block_log.h"
+#include "core/record/table/table.h"
 
 namespace haptrial::bone {
 
@@ -22,8 +25,8 @@ class RegionMap {
   /// @throws InputError for a structure that the bone does not have
   RegionMap(const RegionSetup& setup, const BoneModel& model, double largest);
 
-  std::size_t size() const noexcept { return depths_.size(); }  // structures
-  std::uint8_t label(std::size_t structure) const noexcept { return labels_[structure]; }
+  std::size_t size() const noexcept { return depths_.size(); }                  // structures
+  const std::vector<std::uint8_t>& labels() const noexcept { return labels_; }  // by structure
   const SurfaceDepth& depth(std::size_t structure) const noexcept { return depths_[structure]; }
 
  private:
@@ -76,6 +79,48 @@ class ForbiddenRegion {
   std::shared_ptr<const RegionMap> map_;
   std::vector<double> depths_;  // (structures)
   std::vector<bool> felt_;      // (structures) the burr has been outside since it was taken
+};
+
+}  // namespace haptrial::bone
+
+namespace haptrial::record {
+
+/// A burr's way through a forbidden region, a row of /crossings. Goes through a block log.
+struct CrossingRow {
+  std::uint64_t sequence{0};  // of the last tick in it
+  std::uint64_t begin{0};     // of the first
+  std::uint8_t label{0};      // of the structure
+  bool given{false};          // the participant felt or heard it; else only recorded
+  double depth{0.0};          // greatest, of the burr's surface in the margin [m]
+};
+
+template <>
+const Table<CrossingRow>& table_of<CrossingRow>();
+
+}  // namespace haptrial::record
+
+namespace haptrial::bone {
+
+/// Turns depths in regions, tick by tick, into crossings. Servo thread: no allocation.
+class CrossingWatch {
+ public:
+  /// @param labels  of the structures
+  explicit CrossingWatch(std::vector<std::uint8_t> labels);
+
+  /// @param given   whether the participant feels or hears the regions
+  /// @param depths  (structures) 0: outside [m]
+  /// @returns whether the burr has just entered a region
+  bool after_tick(std::uint64_t sequence, bool given, std::span<const double> depths,
+                  realtime::BlockLog<record::CrossingRow>& log) noexcept;
+  /// Ends the crossings that are on; while no drilling ticks, or on the servo thread.
+  void end(realtime::BlockLog<record::CrossingRow>& log) noexcept;
+
+ private:
+  struct Crossing {
+    bool on{false};
+    record::CrossingRow row;
+  };
+  std::vector<Crossing> crossings_;  // (structures)
 };
 
 }  // namespace haptrial::bone

@@ -1,7 +1,7 @@
 #include "core/bone/simulator/bone_touch.h"
 
 #include "core/bone/drill/feel.h"
-#include "core/bone/simulator/piece_contact.h"
+#include "core/bone/simulator/felt_part.h"
 
 namespace haptrial::bone {
 

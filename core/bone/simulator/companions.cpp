@@ -128,14 +128,7 @@ ThreadedCompanions::ThreadedCompanions(Simulator& simulator, const CompanionPara
     dust_.emplace(parameters.dust, bones, parameters.dust_period);
   }
   if (search) {
-    searcher_ = std::thread([this] { this->search(); });
-  }
-}
-
-ThreadedCompanions::~ThreadedCompanions() {
-  stop_.store(true, std::memory_order_relaxed);
-  if (searcher_.joinable()) {
-    searcher_.join();
+    searcher_ = std::jthread([this](const std::stop_token& stop) { this->search(stop); });
   }
 }
 
@@ -165,9 +158,9 @@ DustBalance ThreadedCompanions::dust() const {
   return dust_ ? dust_->balance() : only_counted(counted_.load(std::memory_order_relaxed));
 }
 
-void ThreadedCompanions::search() {
+void ThreadedCompanions::search(const std::stop_token& stop) {
   const auto period = std::chrono::duration<double>(search_period_);
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     simulator_.world().search();
     std::this_thread::sleep_for(period);
   }

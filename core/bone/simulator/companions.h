@@ -83,7 +83,6 @@ class ThreadedCompanions final : public Companions {
   /// @param search  false where the simulator is told what was separated
   ThreadedCompanions(Simulator& simulator, const CompanionParameters& parameters,
                      bool search = true);
-  ~ThreadedCompanions() override;
 
   void after_tick(const Simulator& simulator, double dt) noexcept override;
   DustBalance dust() const override;
@@ -97,15 +96,14 @@ class ThreadedCompanions final : public Companions {
   void settle() override;
 
  private:
-  void search();
+  void search(const std::stop_token& stop);
 
   Simulator& simulator_;
   double search_period_;
   std::optional<DustWorker> dust_;
   std::optional<DustWorker> blood_;
   std::atomic<double> counted_{0.0};  // of dust that is only counted [voxels]
-  std::atomic<bool> stop_{false};
-  std::thread searcher_;
+  std::jthread searcher_;             // last: it ends before what it uses
 };
 
 }  // namespace haptrial::bone

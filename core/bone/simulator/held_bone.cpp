@@ -148,7 +148,7 @@ void HeldBone::find_touching(const BoneWorld& world) noexcept {
         piece = sample.piece;
         change = to_other * world.pose(piece);
       }
-      const Vector3d at = grid.centre(sample.voxel.x(), sample.voxel.y(), sample.voxel.z());
+      const Vector3d at = grid.centre(sample.voxel);
       const Vector3d from = change * at;
       const Vector3d to = from - kRayReach * (change.linear() * sample.normal_B);
       const auto depth = way_out(world, other, from, to);

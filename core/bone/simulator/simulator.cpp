@@ -179,7 +179,7 @@ void Simulator::take_separations(std::span<const RecordedSplit> recorded) {
   for (const WorldEvent& event : world_.events()) {
     if (event.kind == WorldEvent::Kind::kCrumb) {
       const geometry::VoxelGrid& grid = world_.volume(0).grid();
-      const Eigen::Vector3d p_B = grid.centre(event.seed.x(), event.seed.y(), event.seed.z());
+      const Eigen::Vector3d p_B = grid.centre(event.seed);
       deposits_.push_back({world_.pose(event.piece) * p_B, 0.0, event.amount});
       removed_ += event.amount;
     }
@@ -329,7 +329,7 @@ void Simulator::bleed(double dt) noexcept {
   for (const EmptiedIn& gone : emptied_) {
     if (bleeding_.bleeds(gone.label)) {
       const geometry::VoxelGrid& grid = world_.volume(0).grid();
-      bleeding_.open(gone.label, grid.centre(gone.voxel.x(), gone.voxel.y(), gone.voxel.z()));
+      bleeding_.open(gone.label, grid.centre(gone.voxel));
     }
   }
   for (const Tear& tear : soft_.tears()) {
@@ -431,7 +431,7 @@ std::uint64_t Simulator::checksum() const noexcept {
       const float density = volume.density(address);
       if (density > 0.0F) {
         const Voxel voxel = volume.voxel_at(address);
-        const std::uint64_t index = volume.grid().index(voxel.x(), voxel.y(), voxel.z());
+        const std::uint64_t index = volume.grid().index(voxel);
         sum += mixed(mixed(index * kMaxPieces + known) ^ std::bit_cast<std::uint32_t>(density));
       }
     }

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/bone/simulator/piece_contact.h"
+#include "core/bone/simulator/felt_part.h"
 #include "core/bone/simulator/saw.h"
 #include "core/bone/simulator/simulator.h"
 
@@ -75,7 +75,7 @@ const Simulator::Reach& Simulator::reach_of(int piece) noexcept {
     const double half = 0.5 * volume.grid().spacing;
     for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
       const Voxel& first = volume.brick_origin(brick);
-      const Eigen::Vector3d centre = volume.grid().centre(first.x(), first.y(), first.z());
+      const Eigen::Vector3d centre = volume.grid().centre(first);
       const double width = volume.grid().spacing * BoneVolume::kEdge;
       reach.low = reach.low.cwiseMin(centre - Eigen::Vector3d::Constant(half));
       reach.high = reach.high.cwiseMax(centre + Eigen::Vector3d::Constant(width - half));
@@ -220,9 +220,8 @@ void Simulator::empty_soft(const Eigen::Vector3d& tip_B, double radius) noexcept
   const geometry::VoxelGrid& grid = volume.grid();
   const Eigen::Array3d middle = (tip_B - grid.origin).array() / grid.spacing;
   const double wide = radius / grid.spacing;
-  const Eigen::Array3i last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
   const Eigen::Array3i low = (middle - wide).ceil().cast<int>().cwiseMax(0);
-  const Eigen::Array3i high = (middle + wide).floor().cast<int>().cwiseMin(last);
+  const Eigen::Array3i high = (middle + wide).floor().cast<int>().cwiseMin(grid.last().array());
   for (int k = low[2]; k <= high[2]; ++k) {
     for (int j = low[1]; j <= high[1]; ++j) {
       for (int i = low[0]; i <= high[0]; ++i) {

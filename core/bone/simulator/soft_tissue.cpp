@@ -53,12 +53,12 @@ BoneModel marked_part(const BoneModel& model, std::uint8_t label, double reach) 
                grid.origin + grid.spacing * low.cast<double>(),
                grid.spacing};
   part.structures = {{"", {}}, {"soft", {}}, {"other", {}}};
-  const Voxel last(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1);
+  const Voxel last = grid.last();
   for (int k = 0; k < size.z(); ++k) {
     for (int j = 0; j < size.y(); ++j) {
       for (int i = 0; i < size.x(); ++i) {
         const Voxel v = (low + Voxel(i, j, k)).cwiseMax(0).cwiseMin(last);
-        part.labels.push_back(model.labels[grid.index(v.x(), v.y(), v.z())] == label ? 1 : 2);
+        part.labels.push_back(model.labels[grid.index(v)] == label ? 1 : 2);
       }
     }
   }

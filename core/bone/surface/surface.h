@@ -9,7 +9,6 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/occupancy.h"
 #include "core/bone/surface/border_shares.h"
-#include "core/bone/surface/label_mix.h"
 #include "core/bone/surface/near_structures.h"
 #include "core/bone/surface/remains.h"
 #include "core/bone/surface/surface_cells.h"

@@ -25,18 +25,13 @@ Key moved(Key key, int by) {
 /// The box around the voxels that show, and as far around it as the reach goes.
 Eigen::AlignedBox3i box_of(const BoneModel& model, const std::vector<bool>& shows, int reach) {
   Eigen::AlignedBox3i box;
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] < shows.size() && shows[model.labels[at]]) {
-          box.extend(Voxel(i, j, k));
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const Voxel& voxel, std::size_t at) {
+    if (model.labels[at] < shows.size() && shows[model.labels[at]]) {
+      box.extend(voxel);
     }
-  }
+  });
   if (!box.isEmpty()) {
-    const Voxel last(model.grid.size[0] - 1, model.grid.size[1] - 1, model.grid.size[2] - 1);
+    const Voxel last = model.grid.last();
     box.min() = (box.min() - Voxel::Constant(reach)).cwiseMax(0);
     box.max() = (box.max() + Voxel::Constant(reach)).cwiseMin(last);
   }
@@ -165,7 +160,7 @@ StructureDepths::StructureDepths(const BoneModel& model, const std::vector<bool>
   };
   std::vector<bool> holds(table_.size(), false);  // by brick: anything
   for_each([&](const Voxel& voxel, Key& key) {
-    const std::uint8_t label = model.labels[grid_.index(voxel.x(), voxel.y(), voxel.z())];
+    const std::uint8_t label = model.labels[grid_.index(voxel)];
     if (label != 0) {
       holds[table_index(voxel)] = true;
     }

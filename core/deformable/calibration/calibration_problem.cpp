@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/deformable/springs/compliance.h"
 #include "core/deformable/springs/equilibrium.h"
+#include "core/deformable/springs/spring_tangent.h"
 
 namespace haptrial::deformable {
 namespace {

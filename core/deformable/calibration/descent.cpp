@@ -10,7 +10,6 @@
 #include <memory>
 
 #include "core/deformable/calibration/global_start.h"
-#include "core/deformable/calibration/starting_constants.h"
 
 namespace haptrial::deformable {
 namespace {

@@ -41,7 +41,6 @@ class ImplicitBody {
   std::span<const double> masses() const noexcept { return masses_; }
   const ElementForces& forces() const noexcept { return forces_; }
   const MeshFactor& factor() const noexcept { return *factor_; }
-  double stiffening() const noexcept { return stiffening_; }  // of w
   /// The place of a vertex among the free ones; -1: held.
   std::int32_t free(std::size_t vertex) const noexcept { return free_[vertex]; }
   double inertia() const noexcept {  // (1 + 2 a h) / h² [1/s²]

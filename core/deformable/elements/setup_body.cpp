@@ -11,7 +11,7 @@
 #include "core/base/file_text.h"
 #include "core/deformable/body/mesh_parts.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/hanging_voxels.h"
 #include "core/geometry/volume/voxelize.h"
 

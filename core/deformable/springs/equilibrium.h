@@ -5,10 +5,13 @@
 #include <vector>
 
 #include "core/deformable/body/load_case.h"
-#include "core/deformable/springs/settle.h"
 #include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
+
+/// kUnstable: a position is not finite, or what was found is no minimum of the energy. Positions of
+/// an outcome other than kSettled are no result.
+enum class Settling { kSettled, kUnstable, kNotInTime };
 
 struct NewtonSettings {
   double residual{1e-10};  // of the largest force that acts: where the search ends

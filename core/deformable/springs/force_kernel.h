@@ -10,6 +10,11 @@
 // packs.
 namespace haptrial::deformable {
 
+/// Parts that the stars of the two kinds of voxels inside of a lattice own (ClusterPacks::owned),
+/// as tetrahedralize() cuts them and the last cluster owns. The kernel has code for these alone,
+/// without branches; other stars are computed by code for all.
+inline constexpr std::uint64_t kInLattice[] = {0x20fd083d5, 0x31c7103c7};
+
 /// ClusterPacks as plain pointers, for code that shares nothing with other instruction sets.
 struct PackView {
   std::size_t packs;

@@ -2,7 +2,6 @@
 #include <cstring>
 
 #include "core/deformable/springs/force_kernel.h"
-#include "core/deformable/springs/fused_by_parts.h"
 
 namespace haptrial::deformable {
 namespace {
@@ -12,11 +11,7 @@ typedef double Lanes __attribute__((vector_size(8 * kLanes)));
 typedef long long Flags __attribute__((vector_size(8 * kLanes)));  // -1 or 0
 
 inline Lanes fused(const Lanes& a, const Lanes& b, const Lanes& c) {
-#ifdef __FP_FAST_FMA
   return Lanes{std::fma(a[0], b[0], c[0]), std::fma(a[1], b[1], c[1])};
-#else
-  return fused_by_parts(a, b, c);
-#endif
 }
 
 inline void gather(const double* from, const std::int32_t* at, Lanes& x, Lanes& y, Lanes& z) {

@@ -2,7 +2,6 @@
 
 #include "core/deformable/springs/force_kernel.h"
 #include "core/deformable/springs/force_kernel_vectors.h"
-#include "core/deformable/springs/lattice_kinds.h"
 
 // Included once for each instruction set, by a file that says how many numbers go side by side
 // (kLanes), and gives Lanes, Flags, fused(), gather() and scatter(): everything is its own.

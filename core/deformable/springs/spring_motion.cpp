@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 
 namespace haptrial::deformable {
 namespace {
@@ -87,35 +89,16 @@ void SpringMotion::push(std::size_t vertex, const Vector3d& force) noexcept {
   positions_[vertex] += settings_.step * faster;
 }
 
-Activity SpringMotion::activity() const noexcept {
-  Activity activity;
-  std::size_t free = 0;
+double SpringMotion::fastest() const noexcept {
+  double fastest = 0.0;
   for (std::size_t v = 0; v < masses_.size(); ++v) {
-    if (held(v)) {
-      continue;
+    const double speed = held(v) ? 0.0 : velocities_[v].norm();
+    if (std::isnan(speed)) {
+      return speed;
     }
-    ++free;
-    const Vector3d drag = settings_.damping * velocities_[v];
-    const double speed = velocities_[v].norm();
-    const double acceleration = (forces_[v] - drag).norm() / masses_[v];
-    activity.max_speed = std::max(activity.max_speed, speed);
-    activity.max_acceleration = std::max(activity.max_acceleration, acceleration);
-    activity.mean_speed += speed;
-    activity.mean_acceleration += acceleration;
+    fastest = std::max(fastest, speed);
   }
-  if (free == 0) {
-    return {};
-  }
-  activity.mean_speed /= static_cast<double>(free);
-  activity.mean_acceleration /= static_cast<double>(free);
-  // A maximum passes over what is not a number; a mean does not.
-  if (!std::isfinite(activity.mean_speed)) {
-    activity.max_speed = activity.mean_speed;
-  }
-  if (!std::isfinite(activity.mean_acceleration)) {
-    activity.max_acceleration = activity.mean_acceleration;
-  }
-  return activity;
+  return fastest;
 }
 
 double SpringMotion::kinetic_energy() const {
@@ -130,6 +113,29 @@ double SpringMotion::kinetic_energy() const {
     energy += 0.5 * masses_[v] * (0.5 * (velocities_[v] + after)).squaredNorm();
   }
   return energy;
+}
+
+std::vector<std::int32_t> held_vertices(const LoadCase& load) {
+  std::vector<std::int32_t> held;
+  for (const Hold& hold : load.holds) {
+    held.push_back(hold.vertex);
+  }
+  return held;
+}
+
+void apply(const LoadCase& load, const SpringBody& body, SpringMotion& motion) {
+  std::map<std::size_t, Vector3d> forces;
+  for (const Hold& hold : load.holds) {
+    const auto vertex = static_cast<std::size_t>(hold.vertex);
+    motion.place(vertex, body.rest[vertex] + hold.displacement);
+  }
+  for (const NodalForce& nodal : load.forces) {
+    auto [at, fresh] = forces.try_emplace(static_cast<std::size_t>(nodal.vertex), Vector3d::Zero());
+    at->second += nodal.force;
+  }
+  for (const auto& [vertex, force] : forces) {
+    motion.set_force(vertex, force);
+  }
 }
 
 }  // namespace haptrial::deformable

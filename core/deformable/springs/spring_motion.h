@@ -8,6 +8,7 @@
 
 #include "core/base/instruction_set.h"
 #include "core/deformable/body/body_motion.h"
+#include "core/deformable/body/load_case.h"
 #include "core/deformable/springs/spring_body.h"
 #include "core/deformable/springs/spring_forces.h"
 
@@ -18,12 +19,6 @@ struct MotionSettings {
   double damping{0.0};           // c >= 0, of every vertex [N·s/m]
   bool beyond_stability{false};  // take a step that is refused otherwise, to see what happens
   InstructionSet instructions{best_instruction_set()};
-};
-
-/// How fast free vertices move, and how fast that changes.
-struct Activity {
-  double max_speed{}, mean_speed{};                // [m/s]
-  double max_acceleration{}, mean_acceleration{};  // [m/s²]
 };
 
 /// A body of springs in time, by Verlet's method with viscous damping, whose mean velocity over the
@@ -53,8 +48,9 @@ class SpringMotion final : public BodyMotion {
   bool spreads() const noexcept override { return false; }
 
   std::uint64_t steps() const noexcept { return steps_; }
-  /// Speeds and accelerations of the last step.
-  Activity activity() const noexcept;
+  /// Speed of the fastest free vertex in the last step [m/s]; not a number if one is not. A body
+  /// rests when it stays low for some time. Source: Morris 2006, §5.3.3.
+  double fastest() const noexcept;
   double time() const noexcept { return static_cast<double>(steps_) * settings_.step; }  // [s]
 
   /// Kinetic energy at the time of the positions, with half a kick of the springs' forces [J].
@@ -69,5 +65,12 @@ class SpringMotion final : public BodyMotion {
   std::vector<double> keep_, kick_;  // v₊ = keep v + kick f; both 0 where held
   std::uint64_t steps_{0};
 };
+
+/// The vertices that a load holds.
+std::vector<std::int32_t> held_vertices(const LoadCase& load);
+
+/// Moves held vertices to their places and sets the forces, several on a vertex summed.
+/// The motion must hold held_vertices(load).
+void apply(const LoadCase& load, const SpringBody& body, SpringMotion& motion);
 
 }  // namespace haptrial::deformable

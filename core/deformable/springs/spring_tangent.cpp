@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/base/random.h"
 #include "core/deformable/body/cholesky.h"
 #include "core/deformable/body/conjugate_gradients.h"
+#include "core/deformable/body/fastest_vibration.h"
 #include "core/deformable/body/multigrid.h"
 #include "core/deformable/springs/spring_hessian.h"
 
@@ -103,6 +105,32 @@ bool SpringTangent::is_definite() {
   Vectors unused;
   return t.converges(force, kMillionth * std::sqrt(squares), unused) ||
          (t.factorize() && t.definite);
+}
+
+std::optional<std::vector<Eigen::Vector3d>> small_displacements(
+    const SpringBody& body, std::span<const Hold> holds, std::span<const Eigen::Vector3d> positions,
+    std::span<const Eigen::Vector3d> forces) {
+  SpringHessian hessian(body);
+  hessian.assemble(body, positions);
+  Cholesky factors(hessian.matrix(), held_flags(body.rest.size(), holds));
+  if (!factors.factorize(hessian.matrix())) {
+    return std::nullopt;
+  }
+  Vectors result;
+  factors.solve(Vectors(forces.begin(), forces.end()), result);
+  return result;
+}
+
+double fastest_vibration(const SpringBody& body, std::span<const Eigen::Vector3d> positions,
+                         std::span<const std::int32_t> held) {
+  SpringHessian hessian(body);
+  hessian.assemble(body, positions);
+  return fastest_vibration(hessian.matrix(), body.masses, held);
+}
+
+double stable_step(const SpringBody& body, std::span<const std::int32_t> held) {
+  const double fastest = fastest_vibration(body, body.rest, held);
+  return fastest > 0 ? 2 / fastest : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace haptrial::deformable

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "core/deformable/body/block_matrix.h"
+#include "core/deformable/body/load_case.h"
 #include "core/deformable/springs/spring_body.h"
 
 namespace haptrial::deformable {
@@ -39,5 +43,23 @@ class SpringTangent {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// How far small forces move the vertices of a body that rests at `positions`: K^-1 f with the
+/// exact Hessian K there; 0 for held vertices. One factorization.
+/// @param forces  (vertices) [N]; those on held vertices do nothing
+/// @returns displacements (vertices) [m]; nothing where K is not positive definite
+std::optional<std::vector<Eigen::Vector3d>> small_displacements(
+    const SpringBody& body, std::span<const Hold> holds, std::span<const Eigen::Vector3d> positions,
+    std::span<const Eigen::Vector3d> forces);
+
+/// linear/fastest_vibration.h of small motions about `positions` [1/s], with the exact Hessian
+/// there (spring_hessian.h).
+double fastest_vibration(const SpringBody& body, std::span<const Eigen::Vector3d> positions,
+                         std::span<const std::int32_t> held = {});
+
+/// The longest step of Verlet's method that is stable for small motions about the rest shape, 2 / ω
+/// [s], with or without damping; infinite for a body without any stiffness. A body that is
+/// stretched or crushed far may be stiffer: ask fastest_vibration() there.
+double stable_step(const SpringBody& body, std::span<const std::int32_t> held = {});
 
 }  // namespace haptrial::deformable

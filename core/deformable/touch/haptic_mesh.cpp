@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/deformable/body/load_case.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/hanging_voxels.h"
 #include "core/geometry/volume/voxelize.h"
 

@@ -9,9 +9,8 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "core/deformable/touch/prepared.h"
-#include "core/deformable/touch/prepared_bodies.h"
 
 namespace haptrial::deformable {
 namespace {

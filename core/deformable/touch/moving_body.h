@@ -39,11 +39,11 @@ struct MovingBody {
   std::shared_ptr<const ImplicitBody> implicit;  // of the elements
   SpringBody springs;
   double drag{};         // of every vertex: 2 a times their mean mass [N·s/m]
-  double stable_step{};  // springs/stable_step.h [s]
+  double stable_step{};  // springs/spring_tangent.h [s]
 };
 using SharedMovingBody = std::shared_ptr<const MovingBody>;
 
-/// A moving body, made when it is first asked for and shared (touch/prepared_bodies.h). Any thread
+/// A moving body, made when it is first asked for and shared (touch/prepared.h). Any thread
 /// but the servo thread. @throws InputError as spring_body()
 SharedMovingBody prepared(const SharedHapticMesh& mesh, const SpringTissue& tissue);
 /// @param step  of the body [s]  @throws InputError as check_tissue() and check_memory()

@@ -10,7 +10,6 @@
 
 #include "core/base/error.h"
 #include "core/deformable/touch/ball_touch.h"
-#include "core/deformable/touch/prepared_bodies.h"
 
 namespace haptrial::deformable {
 namespace {

@@ -2,12 +2,32 @@
 
 #include <memory>
 
+#include "core/base/kept.h"
 #include "core/deformable/touch/compliance.h"
+#include "core/deformable/touch/haptic_mesh.h"
 
 namespace haptrial::deformable {
 
+inline constexpr std::size_t kMostPrepared = 128;
+
+/// A mesh of a tissue. Meshes that are alike in every number count as the same.
+template <class Tissue>
+struct TissueMesh {
+  SharedHapticMesh mesh;
+  Tissue tissue;
+  bool operator==(const TissueMesh& other) const {
+    return tissue == other.tissue && (mesh == other.mesh || same_mesh(*mesh, *other.mesh));
+  }
+};
+
+/// Bodies of tissues, kMostPrepared of them.
+template <class Tissue, class Body>
+struct PreparedBodies : Kept<TissueMesh<Tissue>, Body> {
+  PreparedBodies() : Kept<TissueMesh<Tissue>, Body>(kMostPrepared) {}
+};
+
 /// The compliance of a body of a tissue, made when it is first asked for and shared by all who ask
-/// for the same (prepared_bodies.h): trials, participants, threads. Tissues of meshes that are
+/// for the same: trials, participants, threads. Tissues of meshes that are
 /// alike have one mesh. Any thread but the servo thread.
 /// @throws InputError as check_tissue(), and before anything is made if the machine has not the
 /// memory that it takes.

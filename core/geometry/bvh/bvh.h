@@ -10,7 +10,7 @@
 #include "core/base/instruction_set.h"
 #include "core/geometry/mesh/closest_point.h"
 #include "core/geometry/mesh/mesh.h"
-#include "core/geometry/mesh/ray.h"
+#include "core/geometry/mesh/ray_crossing.h"
 
 namespace haptrial::geometry {
 

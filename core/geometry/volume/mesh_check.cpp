@@ -4,9 +4,8 @@
 
 #include <algorithm>
 
-#include "core/geometry/mesh/mesh_bounds.h"
 #include "core/geometry/mesh/mesh_edges.h"
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 
 namespace haptrial::geometry {
 namespace {
@@ -161,9 +160,10 @@ std::string surface_sentence(const MeshReport& r) {
         r.oriented() ? (r.volume >= 0.0 ? ", faces look outwards" : ", faces look inwards") : "");
   }
   if (r.boundary_edges == 0) {
-    return fmt::format("without a boundary, but not closed: {} of three triangles or another odd "
-                       "number, as where a face is there twice or a wall stands inside",
-                       counted(r.odd_edges, "edge", "edges"));
+    return fmt::format(
+        "without a boundary, but not closed: {} of three triangles or another odd "
+        "number, as where a face is there twice or a wall stands inside",
+        counted(r.odd_edges, "edge", "edges"));
   }
   return fmt::format("open: {} in {}", counted(r.boundary_edges, "boundary edge", "boundary edges"),
                      counted(r.boundary_loops, "loop", "loops"));

@@ -5,14 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/psychometric/definition/read_adjustment.h"
-#include "core/psychometric/definition/read_limits.h"
-#include "core/psychometric/definition/read_listed.h"
-#include "core/psychometric/definition/read_pest.h"
-#include "core/psychometric/definition/read_psi.h"
-#include "core/psychometric/definition/read_quest.h"
-#include "core/psychometric/definition/read_staircase.h"
-#include "core/psychometric/definition/read_surface.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 namespace haptrial::psychometric {
 namespace {

@@ -1,11 +1,10 @@
-#include "core/psychometric/definition/read_adjustment.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 #include <fmt/format.h>
 
 #include <vector>
 
 #include "core/psychometric/definition/grid.h"
-#include "core/psychometric/definition/read_listed.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/definition/track_keys.h"
 #include "core/psychometric/procedure/adjusting.h"

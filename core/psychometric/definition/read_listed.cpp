@@ -1,4 +1,4 @@
-#include "core/psychometric/definition/read_listed.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 #include <fmt/format.h>
 

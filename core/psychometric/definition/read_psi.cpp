@@ -1,4 +1,4 @@
-#include "core/psychometric/definition/read_psi.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,6 @@
 
 #include "core/base/definition/schema.h"
 #include "core/psychometric/definition/grid.h"
-#include "core/psychometric/definition/read_quest.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/definition/track_keys.h"
 #include "core/psychometric/procedure/psi_definition.h"

@@ -1,4 +1,4 @@
-#include "core/psychometric/definition/read_quest.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,15 +12,13 @@
 #include <utility>
 
 #include "core/base/definition/expression.h"
-#include "core/base/definition/labels.h"
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/psychometric/definition/grid.h"
-#include "core/psychometric/definition/quest_warnings.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/definition/track_keys.h"
-#include "core/psychometric/function/sigmoid_names.h"
+#include "core/psychometric/function/sigmoid.h"
 #include "core/psychometric/procedure/psi_definition.h"
 
 namespace haptrial::psychometric {

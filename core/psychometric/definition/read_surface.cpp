@@ -1,4 +1,4 @@
-#include "core/psychometric/definition/read_surface.h"
+#include "core/psychometric/definition/read_procedures.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -12,11 +12,9 @@
 #include <vector>
 
 #include "core/base/definition/expression.h"
-#include "core/base/definition/labels.h"
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
-#include "core/psychometric/definition/read_quest.h"
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/definition/track_keys.h"
 #include "core/psychometric/procedure/threshold_surface.h"

@@ -1,7 +1,6 @@
 #include "core/psychometric/function/psychometric_function.h"
 
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -87,16 +86,12 @@ double PsychometricFunction::at(double x) const noexcept {
   return p.guess + (1.0 - p.guess - p.lapse) * curve_.at(z_at(x)).share;
 }
 
-double PsychometricFunction::derivative_at(double x) const noexcept {
-  const auto& p = parameters_;
-  return (1.0 - p.guess - p.lapse) * rate_ * curve_.at(z_at(x)).density;
-}
-
 double PsychometricFunction::derivative(double level) const noexcept {
-  const double x = parameters_.axis.at(level);
+  const auto& p = parameters_;
+  const double x = p.axis.at(level);
   // Far below the threshold the density is 0 before the axis ends.
-  const double slope = derivative_at(x);
-  return slope == 0.0 || !std::isfinite(x) ? 0.0 : slope * parameters_.axis.gradient(level);
+  const double slope = (1.0 - p.guess - p.lapse) * rate_ * curve_.at(z_at(x)).density;
+  return slope == 0.0 || !std::isfinite(x) ? 0.0 : slope * p.axis.gradient(level);
 }
 
 double PsychometricFunction::x_for_share(double share) const {
@@ -126,27 +121,6 @@ double rate_of_width(Sigmoid sigmoid, double width, double tail) {
 double width_of_rate(Sigmoid sigmoid, double rate, double tail) {
   require(positive(rate), "rate must be finite and above 0");
   return spread(sigmoid, tail) / rate;
-}
-
-double rate_of_weibull_shape(double shape, Scale scale) {
-  require(positive(shape), "shape must be finite and above 0");
-  require(scale != Scale::kLinear, "a Weibull function needs a logarithmic scale");
-  return scale == Scale::kNaturalLog
-             ? shape
-             : shape * std::numbers::ln10 / (scale == Scale::kDecibel ? 20.0 : 1.0);
-}
-
-double slope_at_threshold(const PsychometricParameters& parameters) {
-  const auto& p = checked(parameters);
-  const SigmoidCurve curve = curve_of(p);
-  return (1.0 - p.guess - p.lapse) * std::abs(curve.at(curve.centre()).density) * curve.spread() /
-         p.width;
-}
-
-double width_for_slope(PsychometricParameters parameters, double slope) {
-  require(positive(slope), "slope must be finite and above 0");
-  parameters.width = 1.0;
-  return slope_at_threshold(parameters) / slope;
 }
 
 }  // namespace haptrial::psychometric

@@ -3,8 +3,7 @@
 #include <string_view>
 
 #include "core/psychometric/function/axis.h"
-#include "core/psychometric/function/sigmoid_curve.h"
-#include "core/psychometric/function/sigmoid_names.h"
+#include "core/psychometric/function/sigmoid.h"
 
 namespace haptrial::psychometric {
 
@@ -53,7 +52,6 @@ class PsychometricFunction {
   double operator()(double level) const noexcept { return at(parameters_.axis.at(level)); }
   double at(double x) const noexcept;              // x on the axis
   double derivative(double level) const noexcept;  // d psi / d level [1/unit of the level]
-  double derivative_at(double x) const noexcept;   // d psi / dx [1/unit of the axis]
 
   /// The level for a probability.
   /// @throws std::invalid_argument unless the probability lies between both asymptotes.
@@ -84,11 +82,5 @@ class PsychometricFunction {
 /// @throws std::invalid_argument naming the argument that is out of its bounds
 double rate_of_width(Sigmoid sigmoid, double width, double tail = 0.05);
 double width_of_rate(Sigmoid sigmoid, double rate, double tail = 0.05);
-double rate_of_weibull_shape(double shape, Scale scale);
-
-/// The steepness of psi at its threshold, |d psi / dx| = (1 - guess - lapse) f(q) rate, and the
-/// width that gives it; psignifit 4 states slopes so. Positive also if the function falls.
-double slope_at_threshold(const PsychometricParameters& parameters);
-double width_for_slope(PsychometricParameters parameters, double slope);
 
 }  // namespace haptrial::psychometric

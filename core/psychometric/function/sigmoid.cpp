@@ -3,10 +3,15 @@
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/base/nearest.h"
 
 namespace haptrial::psychometric {
 namespace {
@@ -197,6 +202,96 @@ double sigmoid_quantile(Sigmoid kind, double p) {
       return -1.0 / std::tan(std::numbers::pi * p);
   }
   return std::numeric_limits<double>::quiet_NaN();
+}
+
+namespace {
+
+constexpr std::string_view kFalling = "neg_";
+
+constexpr std::array<SigmoidName, 13> kNames{{{"logistic", {Sigmoid::kLogistic}},
+                                              {"cumulative_gaussian", {Sigmoid::kGaussian}},
+                                              {"norm", {Sigmoid::kGaussian}},
+                                              {"gauss", {Sigmoid::kGaussian}},
+                                              {"norm_cdf", {Sigmoid::kGaussian}},
+                                              {"gumbel", {Sigmoid::kGumbel}},
+                                              {"reversed_gumbel", {Sigmoid::kReversedGumbel}},
+                                              {"rgumbel", {Sigmoid::kReversedGumbel}},
+                                              {"tdist", {Sigmoid::kCauchy}},
+                                              {"weibull", {Sigmoid::kGumbel, true}},
+                                              {"rweibull", {Sigmoid::kReversedGumbel, true}},
+                                              {"log_normal", {Sigmoid::kGaussian, true}},
+                                              {"logn", {Sigmoid::kGaussian, true}}}};
+
+std::string in_small_letters(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::span<const SigmoidName> sigmoid_names() { return kNames; }
+
+SigmoidForm sigmoid_named(std::string_view name) {
+  const std::string small = in_small_letters(name);
+  std::string_view plain = small;
+  const bool falling = plain.starts_with(kFalling);
+  plain.remove_prefix(falling ? kFalling.size() : 0);
+  std::vector<std::string> allowed;
+  for (const SigmoidName& known : kNames) {
+    if (known.name == plain) {
+      SigmoidForm form = known.form;
+      form.falling = falling;
+      return form;
+    }
+    allowed.emplace_back((falling ? std::string(kFalling) : "").append(known.name));
+  }
+  throw std::invalid_argument(
+      not_allowed("the psychometric function", "'" + std::string(name) + "'", allowed) +
+      (falling ? "" : ", and neg_ before each of these"));
+}
+
+namespace {
+
+SigmoidPoint turned(const SigmoidPoint& p) noexcept {
+  return {p.beyond, p.share, -p.density, -p.bend};
+}
+
+}  // namespace
+
+SigmoidCurve::SigmoidCurve(Sigmoid sigmoid, double share, double tail, bool falling)
+    : sigmoid_(sigmoid), falling_(falling) {
+  if (!(share > 0.0 && share < 1.0)) {
+    throw std::invalid_argument("share must be between 0 and 1");
+  }
+  if (!(tail > 0.0 && tail < 0.5)) {
+    throw std::invalid_argument("tail must be between 0 and 0.5");
+  }
+  centre_ = z_for(share);
+  spread_ = sigmoid_quantile(sigmoid, 1.0 - tail) - sigmoid_quantile(sigmoid, tail);
+}
+
+SigmoidPoint SigmoidCurve::at(double z) const noexcept {
+  const SigmoidPoint rising = sigmoid_point(sigmoid_, z);
+  return falling_ ? turned(rising) : rising;
+}
+
+void SigmoidCurve::at(const double* z, SigmoidLanes& lanes) const noexcept {
+  sigmoid_lanes(sigmoid_, z, lanes);
+  for (std::size_t i = 0; falling_ && i < SigmoidLanes::kCount; ++i) {
+    const SigmoidPoint p =
+        turned({lanes.share[i], lanes.beyond[i], lanes.density[i], lanes.bend[i]});
+    lanes.share[i] = p.share;
+    lanes.beyond[i] = p.beyond;
+    lanes.density[i] = p.density;
+    lanes.bend[i] = p.bend;
+  }
+}
+
+double SigmoidCurve::z_for(double share) const {
+  return sigmoid_quantile(sigmoid_, falling_ ? 1.0 - share : share);
 }
 
 }  // namespace haptrial::psychometric

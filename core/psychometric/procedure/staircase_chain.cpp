@@ -3,10 +3,91 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/psychometric/procedure/chain.h"
 #include "core/psychometric/procedure/procedure.h"
 
 namespace haptrial::psychometric {
+
+ChainStates::ChainStates(const StaircaseParameters& parameters, std::size_t most)
+    : origin_(parameters.axis.at(parameters.low)),
+      resolution_(1e-9 * (parameters.axis.at(parameters.high) - origin_)),
+      most_(most) {}
+
+std::size_t ChainStates::Hash::operator()(const Key& key) const noexcept {
+  auto h = static_cast<std::uint64_t>(key.x) * 0x9e3779b97f4a7c15u;
+  h ^= static_cast<std::uint64_t>(key.counts) + (h >> 29);
+  h *= 0xbf58476d1ce4e5b9u;
+  return static_cast<std::size_t>(h ^ (h >> 32));
+}
+
+std::size_t ChainStates::index_of(const StaircaseState& state) {
+  // Counts of answers are at most 100, blocked steps 1000 and reversals 100,000: no two overlap.
+  std::int64_t counts = state.reversals;
+  counts = counts * 128 + state.right;
+  counts = counts * 128 + state.wrong;
+  counts = counts * 4 + (state.direction + 1);
+  counts = counts * 1024 + state.blocked;
+  const Key key{std::llround((state.x - origin_) / resolution_), counts};
+  const auto [at, entered] = index_.try_emplace(key, states_.size());
+  if (entered) {
+    checks::require(states_.size() < most_, "Staircase",
+                    "steps up and down lead to more levels than can be predicted; "
+                    "let both be multiples of a common size");
+    states_.push_back(state);
+  }
+  return at->second;
+}
+
+void ChainStates::clear() {
+  states_.clear();
+  index_.clear();
+}
+
+Chain::Chain(const StaircaseParameters& parameters, const AnswerProbability& probability,
+             std::size_t most_states)
+    : parameters_(parameters),
+      probability_(probability),
+      states_(parameters, most_states),
+      nodes_(parameters.schedule == StaircaseParameters::Schedule::kTrials ? parameters.steps.size()
+                                                                           : 1) {
+  checks::require(static_cast<bool>(probability), "Staircase", "probability must be given");
+  states_.index_of(begin(parameters_));
+}
+
+std::size_t Chain::phase_of(int trial) const {
+  std::size_t phase = nodes_.size() - 1;
+  while (phase > 0 && parameters_.steps[phase].from > trial) {
+    --phase;
+  }
+  return phase;
+}
+
+const Chain::Node& Chain::node(std::size_t state, int trial) {
+  const std::size_t phase = phase_of(trial);
+  if (nodes_[phase].size() <= state) {
+    nodes_[phase].resize(states_.size());
+  }
+  if (!nodes_[phase][state]) {
+    const Answer right = follow(state, trial, true);
+    const Answer wrong = follow(state, trial, false);
+    nodes_[phase][state] = Node{right, wrong, probability_at(states_[state].x)};
+  }
+  return *nodes_[phase][state];
+}
+
+Chain::Answer Chain::follow(std::size_t index, int trial, bool right) {
+  StaircaseState state = states_[index];
+  state.trials = trial - 1;
+  const bool reversal = advance(parameters_, state, right, state.x);
+  state.trials = 0;
+  return {states_.index_of(state), reversal};
+}
+
+double Chain::probability_at(double x) const {
+  const double p = probability_(parameters_.axis.level(x));
+  checks::require(p >= 0.0 && p <= 1.0, "Staircase", "probability must be from 0 to 1");
+  return p;
+}
+
 namespace {
 
 using Estimator = StaircaseParameters::Estimator;

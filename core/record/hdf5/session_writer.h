@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/common_tables.h"
-#include "core/record/rows/response.h"
 #include "core/record/rows/rows.h"
-#include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
 #include "core/record/table/table.h"
 

@@ -10,14 +10,13 @@
 #include <utility>
 #include <vector>
 
-#include "core/record/hdf5/disk_space.h"
-#include "core/record/hdf5/disk_sync.h"
+#include "core/record/hdf5/disk.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/hdf5/read_back.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/hdf5/table_writer.h"
-#include "core/record/rows/run_types.h"
+#include "core/record/rows/session_types.h"
 
 /// Declarations that session_writer.cpp and session_resume.cpp share; for those only.
 namespace haptrial::record {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/record/read/imported.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/tick_rows.h"
 
 namespace haptrial::record {

@@ -14,9 +14,9 @@
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/hdf5/session_info.h"
 #include "core/record/read/found_table.h"
-#include "core/record/read/sample_columns.h"
+#include "core/record/read/table_columns.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/rows/taken_back_row.h"
+#include "core/record/rows/trial_facts.h"
 #include "core/record/table/byte_planes.h"
 #include "core/record/table/schema.h"
 

@@ -12,8 +12,7 @@
 #include <vector>
 
 #include "core/record/read/table_columns.h"
-#include "core/record/rows/response.h"
-#include "core/record/rows/run_types.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/session_types.h"
 #include "core/record/table/cells.h"
 #include "core/record/table/table.h"

@@ -33,9 +33,9 @@ struct Recovery {
 
 /// Writes whatever the damaged session file still holds to the new session file `out`; nothing when
 /// there is nothing. The structure of the file is not needed: every chunk of rows that is whole is
-/// found by itself (core/record/recovery/chunk_scan.h), and the older copies of a chunk that was
-/// written again stand in for a damaged one. Where samples are missing the sequence numbers have a
-/// gap; an event "recovered" says how the file came to be.
+/// found by itself (core/record/recovery/recovered_rows.h), and the older copies of a chunk that
+/// was written again stand in for a damaged one. Where samples are missing the sequence numbers
+/// have a gap; an event "recovered" says how the file came to be.
 /// @param tables  beside those of every session, some of which the file may have
 /// @param more    further tables that a session's definition states, as its channels; they outlive
 /// the call

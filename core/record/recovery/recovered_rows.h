@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "core/record/recovery/recovered_table.h"
-#include "core/record/rows/run_types.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
@@ -47,5 +48,15 @@ class RecoveredRows {
 
   RecoveredTable samples_;
 };
+
+/// Finds the chunks of our datasets in a file without its structure: each is a zlib stream with a
+/// checksum, and its size when inflated tells its dataset.
+///
+/// @param longest  chunk when inflated [bytes]
+/// Calls found(offset, raw) for each stream that is whole, in the order of the file; `raw` is
+/// inflated, and valid until found() returns.
+void scan_chunks(
+    std::span<const std::uint8_t> file, std::size_t longest,
+    const std::function<void(std::uint64_t offset, std::span<const std::uint8_t> raw)>& found);
 
 }  // namespace haptrial::record

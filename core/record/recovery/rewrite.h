@@ -9,6 +9,7 @@
 
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/recovery/recovered_rows.h"
+#include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
 
@@ -35,5 +36,10 @@ void write_rows(SessionWriter& writer, const RecoveredRows& rows,
 /// @param begun  passes that rows of RowsOf::kPass may number
 void write_rows_of_passes(SessionWriter& writer, const RecoveredRows& rows, std::size_t passes,
                           std::size_t begun);
+
+/// The root attributes of a file that may be damaged, read by a process of its own: HDF5 1.10 can
+/// crash, or not come back, on a damaged heap of texts. Nothing where it does or finds none.
+/// For a program with one thread.
+std::optional<SessionInfo> isolated_info(const std::filesystem::path& file);
 
 }  // namespace haptrial::record

@@ -6,9 +6,9 @@
 #include "core/base/error.h"
 #include "core/record/hdf5/session_target.h"
 #include "core/record/hdf5/session_writer_impl.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
-#include "core/record/read/trial_facts_of.h"
 #include "core/record/recovery/repair.h"
 #include "core/record/table/schema.h"
 

@@ -4,11 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows/page_answer.h"
-#include "core/record/rows/response.h"
-#include "core/record/rows/run_types.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/session_types.h"
-#include "core/record/rows/taken_back_row.h"
 #include "core/record/rows/trial_facts.h"
 
 namespace haptrial::record {

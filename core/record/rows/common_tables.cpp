@@ -6,16 +6,12 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/record/rows/device_row.h"
-#include "core/record/rows/link_row.h"
+#include "core/record/rows/answer_rows.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/marker_row.h"
-#include "core/record/rows/network_row.h"
-#include "core/record/rows/page_answer.h"
-#include "core/record/rows/response.h"
+#include "core/record/rows/partner_rows.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/rows/taken_back_row.h"
 #include "core/record/rows/trial_facts.h"
-#include "core/record/rows/tutoring_row.h"
 
 namespace haptrial::record {
 

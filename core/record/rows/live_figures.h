@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows/sink.h"
+#include "core/record/rows/rows.h"
 
 namespace haptrial::record {
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "core/record/table/table.h"
 
@@ -84,5 +85,9 @@ const TableList& trial_tables();
 const TableList& adaptation_tables();
 /// The one of sessions whose questions limit reaction times.
 const TableList& out_of_time_tables();
+
+/// The condition of a trial by the levels of its factors: joined by ", ". If they have more than
+/// kConditionBytes, each is cut to its share of them, so that its beginning stays.
+std::string condition_label(std::vector<std::string> levels);
 
 }  // namespace haptrial::record

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "core/record/table/rounding.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::record {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -60,5 +61,18 @@ inline constexpr double kVelocityResolution = 0x1p-16;     // about 15 micrometr
 inline constexpr double kForceResolution = 0x1p-13;        // about 0.12 mN [N]
 inline constexpr double kOrientationResolution = 0x1p-20;  // about 2 microradians [1]
 inline constexpr double kPedalResolution = 0x1p-10;
+
+/// @throws std::invalid_argument for a text above `bytes` or with a NUL byte.
+void check_text(std::string_view text, std::size_t bytes, const char* what);
+
+/// The nearest multiple of `resolution` (a power of two), as the 32-bit columns of a session file
+/// keep it: rounding again changes nothing. Adding and subtracting 1.5 * 2^52 rounds to a whole
+/// number without a call, so that loops vectorise. NaN and infinity stay.
+inline double on_grid(double value, double resolution) noexcept {
+  constexpr double kMagic = 0x1.8p52;
+  const double steps = value / resolution;
+  const double rounded = (steps + kMagic) - kMagic;
+  return std::abs(steps) < 0x1p51 ? rounded * resolution : value;
+}
 
 }  // namespace haptrial::record

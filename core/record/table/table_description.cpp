@@ -8,8 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "core/record/table/check_text.h"
 #include "core/record/table/field_codec.h"
+#include "core/record/table/schema.h"
 
 namespace haptrial::record {
 namespace {

@@ -39,7 +39,7 @@ void BoneBlocks::begin(const geometry::VoxelGrid& grid) {
 
 /// Cell (i, j, k) lies between the centres of voxel (i, j, k) and (i + 1, j + 1, k + 1).
 Eigen::AlignedBox3d BoneBlocks::box_of(const Voxel& low, const Voxel& high) const {
-  return {grid_.centre(low.x(), low.y(), low.z()), grid_.centre(high.x(), high.y(), high.z())};
+  return {grid_.centre(low), grid_.centre(high)};
 }
 
 void BoneBlocks::follow(const bone::Surface& surface, const geometry::VoxelGrid& grid) {

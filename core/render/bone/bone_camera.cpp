@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 namespace haptrial::render {
 namespace {
-
-constexpr double kPole = 0.01;  // how near to `up` the view may come [rad]
 
 Eigen::Matrix4d projection_of(double near, double far, double height, double aspect, double shift) {
   // The frustum's sides at the near plane; off-axis by `shift`.
@@ -59,28 +56,6 @@ Camera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
   }
   camera.eye = box.center() + distance * from.normalized();
   return camera;
-}
-
-Camera orbited(const Camera& camera, double right, double above) {
-  const Eigen::Vector3d axis = camera.up.normalized();
-  const Eigen::Vector3d from = camera.eye - camera.target;
-  const Eigen::Vector3d turned = Eigen::AngleAxisd(right, axis) * from;
-  const double now = std::acos(std::clamp(turned.normalized().dot(axis), -1.0, 1.0));
-  const double then =
-      std::clamp(now - above, std::min(now, kPole), std::max(now, std::numbers::pi - kPole));
-  const Eigen::Vector3d side = axis.cross(turned).normalized();
-  Camera moved = camera;
-  moved.eye = camera.target + Eigen::AngleAxisd(then - now, side) * turned;
-  return moved;
-}
-
-Camera translated(const Camera& camera, double right, double above) {
-  const Eigen::Matrix3d axes = camera.pose().linear();
-  const Eigen::Vector3d way = right * axes.col(0) + above * axes.col(1);
-  Camera moved = camera;
-  moved.eye += way;
-  moved.target += way;
-  return moved;
 }
 
 Camera zoomed(const Camera& camera, double factor) {

@@ -14,11 +14,6 @@ namespace haptrial::render {
 Camera looking_at(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& from,
                   const Eigen::Vector3d& up, double aspect, double field_of_view = 0.35);
 
-/// The eye goes round the target: to the right by `right`, up by `above` [rad]. Close to the poles
-/// it stops.
-Camera orbited(const Camera& camera, double right, double above);
-/// Eye and target go along the picture's axes [m].
-Camera translated(const Camera& camera, double right, double above);
 /// Things become `factor` > 0 times as large in the picture, by a narrower field of view.
 Camera zoomed(const Camera& camera, double factor);
 

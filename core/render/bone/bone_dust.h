@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/bone/dust/dust_quad.h"
+#include "core/bone/dust/dust.h"
 #include "core/render/bone/bone_camera.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"

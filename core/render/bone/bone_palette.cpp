@@ -4,6 +4,17 @@
 #include <cmath>
 
 namespace haptrial::render {
+
+BoneStyle microscope_style() {
+  BoneStyle style;
+  style.ambient = 0.24;
+  style.diffuse = 0.72;
+  style.specular = 0.22;
+  style.shininess = 70.0;
+  style.vignette = 0.6;
+  return style;
+}
+
 namespace {
 
 using Rgb = std::array<float, 3>;

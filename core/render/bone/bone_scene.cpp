@@ -16,7 +16,7 @@
 #include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shaders.h"
 #include "core/render/bone/depth_tiles.h"
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

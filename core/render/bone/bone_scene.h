@@ -8,15 +8,15 @@
 #include <span>
 #include <vector>
 
-#include "core/bone/dust/dust_quad.h"
+#include "core/bone/dust/dust.h"
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/dent.h"
 #include "core/bone/surface/surface.h"
 #include "core/bone/surface/surface_depths.h"
 #include "core/geometry/mesh/mesh.h"
 #include "core/render/bone/bone_camera.h"
+#include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shading.h"
-#include "core/render/bone/bone_style.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/gl.h"
 #include "core/render/gl/quality_steps.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

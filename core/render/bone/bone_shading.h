@@ -6,7 +6,7 @@
 
 #include "core/render/bone/bone_camera.h"
 #include "core/render/bone/bone_layer.h"
-#include "core/render/bone/bone_style.h"
+#include "core/render/bone/bone_palette.h"
 #include "core/render/bone/tool_shadow.h"
 #include "core/render/gl/gl.h"
 

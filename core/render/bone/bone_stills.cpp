@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/render/gl/offscreen.h"
+
 namespace haptrial::render {
 namespace {
 
@@ -146,6 +148,34 @@ void TrialDisplay::draw_saturation() {
   const double inset = std::max(0.0, 0.5 * (style_.margin - side));  // where no bar can reach
   const double right = style_.width - inset;
   painter_.fill({{right - side, inset}, {right, inset + side}}, 0.0, style_.saturation_colour);
+}
+
+struct FrameRenderer::Impl {
+  explicit Impl(const TrialDisplayStyle& style)
+      : context(style.width, style.height),
+        display(context.gl(), style, style.width, style.height) {}
+  // The display frees what it has in this context, which another may have replaced as current.
+  ~Impl() { context.make_current(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  OffscreenContext context;
+  TrialDisplay display;
+};
+
+FrameRenderer::FrameRenderer(const TrialDisplayStyle& style)
+    : impl_(std::make_unique<Impl>(style)) {}
+
+FrameRenderer::~FrameRenderer() = default;
+
+void FrameRenderer::set_trajectory(std::span<const Eigen::Vector3d> points) {
+  impl_->display.set_trajectory(points);
+}
+
+Image FrameRenderer::draw(const stimulus::Presentation& presentation) {
+  impl_->context.make_current();
+  impl_->display.draw(presentation);
+  return impl_->context.read();
 }
 
 }  // namespace haptrial::render

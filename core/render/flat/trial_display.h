@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/render/flat/painter.h"
 #include "core/render/flat/trial_display_style.h"
+#include "core/render/gl/image.h"
 #include "core/stimulus/presentation.h"
 
 namespace haptrial::render {
@@ -54,6 +56,24 @@ class TrialDisplay {
   Painter painter_;
   View view_;
   std::vector<Eigen::Vector2d> curve_;  // (N x 2) [px]
+};
+
+/// Draws trial pictures off screen, with an OpenGL context of its own. One thread at a time.
+class FrameRenderer {
+ public:
+  /// @throws std::invalid_argument as TrialDisplay does; RunError when there is no OpenGL.
+  explicit FrameRenderer(const TrialDisplayStyle& style);
+  ~FrameRenderer();
+  FrameRenderer(const FrameRenderer&) = delete;
+  FrameRenderer& operator=(const FrameRenderer&) = delete;
+
+  /// @param points  p_W (N x 3) [m]; see TrialDisplay.
+  void set_trajectory(std::span<const Eigen::Vector3d> points);
+  Image draw(const stimulus::Presentation& presentation);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace haptrial::render

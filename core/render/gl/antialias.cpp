@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

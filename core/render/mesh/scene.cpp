@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/render/gl/gl_program.h"
+#include "core/render/gl/gl.h"
 #include "core/render/gl/offscreen.h"
 
 namespace haptrial::render {

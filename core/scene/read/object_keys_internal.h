@@ -2,8 +2,8 @@
 
 // Keys that all kinds of objects have.
 
-#include "core/contact/moving_objects.h"
 #include "core/contact/proxy.h"
+#include "core/contact/renderer.h"
 #include "core/scene/field.h"
 #include "core/scene/read/field_kinds.h"
 

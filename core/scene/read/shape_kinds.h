@@ -37,4 +37,17 @@ const std::vector<KindOfShape>& kinds_of_shape();
 /// @throws std::invalid_argument for a word that a shape or a field has
 void add_kind_of_shape(const KindOfShape& kind);
 
+/// A part of space that stages ask about: "until inside", "hidden beyond".
+struct Region {
+  std::string name;  // of the table [regions.NAME]
+  Shape shape;
+};
+
+/// Reads one table [regions.NAME]: `type` and the keys of its kind (shape_kinds.h). Problems are
+/// noted in the table.
+Region read_region(Table& table, std::string name);
+
+/// Every table of [regions].
+std::vector<Region> read_regions(Table& regions);
+
 }  // namespace haptrial::scene

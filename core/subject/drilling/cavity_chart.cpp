@@ -40,18 +40,13 @@ constexpr double kAround = 22e-3;  // columns on each side [m]
 Eigen::Vector3d middle_of(const bone::BoneModel& model, const std::string& name) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   std::size_t count = 0;
-  std::size_t at = 0;
   const geometry::VoxelGrid& grid = model.grid;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i, ++at) {
-        if (model.structures[model.labels[at]].name == name) {
-          sum += grid.centre(i, j, k);
-          ++count;
-        }
-      }
+  geometry::visit_voxels(grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.structures[model.labels[at]].name == name) {
+      sum += grid.centre(voxel);
+      ++count;
     }
-  }
+  });
   if (count == 0) {
     refuse(model, "cavity.beside", name);
   }
@@ -103,42 +98,14 @@ double margin_of(const CavityParameters& cavity, const std::string& structure) {
   return cavity.margin;
 }
 
-bone::Voxel voxel_at(const geometry::VoxelGrid& grid, const Eigen::Vector3d& p_B) {
-  return ((p_B - grid.origin) / grid.spacing).array().round().cast<std::int32_t>();
-}
-
-/// Distance at a place, linear between the centres of voxels; nothing if one of the eight is beyond
-/// the reach.
-std::optional<double> distance_at(const bone::DistanceField& field, const geometry::VoxelGrid& grid,
-                                  const Eigen::Vector3d& p_B) {
-  const Eigen::Array3d at = (p_B - grid.origin).array() / grid.spacing;
-  const Eigen::Array3i low = at.floor().cast<int>();
-  const Eigen::Array3d share = at - at.floor();
-  double sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Array3i up(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
-    const auto distance = field.at((low + up).matrix());
-    if (!distance) {
-      return std::nullopt;
-    }
-    sum += *distance * (up == 1).select(share, 1.0 - share).prod();
-  }
-  return sum;
-}
-
 /// The voxels that may have a distance to a structure: those that are no farther than `reach`.
 Eigen::AlignedBox3d voxels_near(const bone::BoneModel& model, std::size_t label, double reach) {
   Eigen::AlignedBox3d box;
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] == label) {
-          box.extend(Eigen::Vector3d(i, j, k));
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.labels[at] == label) {
+      box.extend(voxel.cast<double>());
     }
-  }
+  });
   const double around = reach / model.grid.spacing + 1.0;
   return {box.min().array() - around, box.max().array() + around};
 }
@@ -175,7 +142,7 @@ void keep_away(DrillingChart& chart, const bone::BoneModel& model, const Eigen::
     for (int j = near.min().y(); j <= near.max().y(); ++j) {
       for (int i = near.min().x(); i <= near.max().x(); ++i) {
         const Eigen::Vector3d place = chart.cell * Eigen::Vector3d(i, j, k);
-        const auto distance = distance_at(field, model.grid, X_BW * chart.world(place));
+        const auto distance = field.linear_at(X_BW * chart.world(place));
         if (distance) {
           float& clearance =
               chart.clearance[chart.column(i, j) + chart.columns() * static_cast<std::size_t>(k)];
@@ -193,10 +160,8 @@ void find_surface(DrillingChart& chart, const bone::BoneModel& model,
     for (int i = 0; i < chart.size[0]; ++i) {
       for (double w = 0.0; w < kAbove + kBelow; w += 0.5 * kCell) {
         const Eigen::Vector3d place(i * kCell, j * kCell, w);
-        const bone::Voxel v = voxel_at(grid, X_BW * chart.world(place));
-        const bool inside = v.x() >= 0 && v.y() >= 0 && v.z() >= 0 && v.x() < grid.size[0] &&
-                            v.y() < grid.size[1] && v.z() < grid.size[2];
-        if (inside && model.labels[grid.index(v.x(), v.y(), v.z())] != 0) {
+        const bone::Voxel v = grid.nearest(X_BW * chart.world(place));
+        if (grid.contains(v) && model.labels[grid.index(v)] != 0) {
           chart.surface[chart.column(i, j)] = static_cast<float>(w);
           break;
         }
@@ -229,33 +194,27 @@ DrillingChart make_chart(const bone::BoneModel& model, const Eigen::Isometry3d& 
 std::vector<float> cavity_depths(const bone::BoneModel& model, const Eigen::Isometry3d& X_WB,
                                  const DrillingChart& chart, const std::vector<float>& floor) {
   std::vector<float> depths(model.grid.count(), -1.0F);
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] == 0 || model.structures[model.labels[at]].name != bone::kPlainBone) {
-          continue;
-        }
-        const Eigen::Vector3d place = chart.place(X_WB * model.grid.centre(i, j, k));
-        const auto u = static_cast<int>(std::lround(place.x() / chart.cell));
-        const auto v = static_cast<int>(std::lround(place.y() / chart.cell));
-        if (u < 0 || v < 0 || u >= chart.size[0] || v >= chart.size[1]) {
-          continue;
-        }
-        const std::size_t column = chart.column(u, v);
-        const auto deep = static_cast<float>(place.z());
-        // A column that is to be left has its floor at its surface, which a slope may rise above.
-        const bool drilled =
-            chart.surface[column] != DrillingChart::kNone && floor[column] > chart.surface[column];
-        const double aside = (place - chart.end).head<2>().norm();
-        const double wide =
-            chart.floor_radius + chart.slope * std::max(0.0, chart.end.z() - place.z());
-        if (drilled && deep < floor[column] && aside <= wide) {
-          depths[at] = std::max(0.0F, deep - chart.surface[column]);
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.labels[at] == 0 || model.structures[model.labels[at]].name != bone::kPlainBone) {
+      return;
     }
-  }
+    const Eigen::Vector3d place = chart.place(X_WB * model.grid.centre(voxel));
+    const auto u = static_cast<int>(std::lround(place.x() / chart.cell));
+    const auto v = static_cast<int>(std::lround(place.y() / chart.cell));
+    if (u < 0 || v < 0 || u >= chart.size[0] || v >= chart.size[1]) {
+      return;
+    }
+    const std::size_t column = chart.column(u, v);
+    const auto deep = static_cast<float>(place.z());
+    // A column that is to be left has its floor at its surface, which a slope may rise above.
+    const bool drilled =
+        chart.surface[column] != DrillingChart::kNone && floor[column] > chart.surface[column];
+    const double aside = (place - chart.end).head<2>().norm();
+    const double wide = chart.floor_radius + chart.slope * std::max(0.0, chart.end.z() - place.z());
+    if (drilled && deep < floor[column] && aside <= wide) {
+      depths[at] = std::max(0.0F, deep - chart.surface[column]);
+    }
+  });
   return depths;
 }
 

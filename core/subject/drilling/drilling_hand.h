@@ -7,7 +7,7 @@
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"
 #include "core/subject/hand_model.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial {
 template <class T>

@@ -15,7 +15,7 @@
 #include "core/subject/drilling/hint_heeding.h"
 #include "core/subject/drilling/surgeon_work.h"
 #include "core/subject/hand_model.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial::subject {
 

@@ -11,7 +11,7 @@
 #include "core/stimulus/observer.h"
 #include "core/subject/drilling/fragment_plan.h"
 #include "core/subject/hand_model.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 
 namespace haptrial {
 template <class T>

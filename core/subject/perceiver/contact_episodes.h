@@ -6,14 +6,35 @@
 
 #include "core/base/point_state.h"
 #include "core/subject/perceiver/felt.h"
-#include "core/subject/perceiver/upper_mean.h"
 
 namespace haptrial::subject {
+
+/// Mean of the greater values of a signal: of those that it had during the greater half of the
+/// time. The rise of a push and a short impact do not count. Values are gathered in bins of at most
+/// 1/16 of their size, each with its own mean, so that a steady signal comes out exactly.
+/// Servo thread.
+class UpperMean {
+ public:
+  void clear() noexcept { *this = UpperMean{}; }
+  /// @param value  0 to 1,000; beyond counts as the next of them
+  void add(double value, double duration) noexcept;
+  double mean() const noexcept;  // 0 if nothing was added
+
+ private:
+  static constexpr int kPerOctave = 16;
+  static constexpr int kLowest = -10;  // below 2^kLowest is one bin
+  static constexpr int kOctaves = 20;
+  struct Bin {
+    double time{0.0};
+    double sum{0.0};
+  };
+  std::array<Bin, 1 + kPerOctave * kOctaves> bins_;
+};
 
 /// The hand's contacts in an interval, as physical quantities: f is the force on the hand, p and v
 /// its position and velocity; in contact |f| is above contact_force, moving |v| above moving_speed.
 ///
-///     force       mean of |f| over the greater half of the time in contact (upper_mean.h)
+///     force       mean of |f| over the greater half of the time in contact (UpperMean)
 ///     stiffness   -slope of n·f over n·p in the longest contact, n the axis of most force
 ///     viscosity   slope over |v| of the force r = -f·v/|v| that resists, while moving
 ///     friction    ∫ r |v| dt / ∫ |v| dt, while moving: what springs give back does not count

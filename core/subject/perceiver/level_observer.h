@@ -33,7 +33,6 @@ class LevelObserver {
   /// the intervals in their order. Each takes the answer before from the last call.
   Decision between(int trial, std::span<const double> levels, Extreme extreme) noexcept;
   Decision yes_no(int trial, double level) noexcept;
-  Judge& judge() noexcept { return judge_; }
 
   /// sd of the log of a percept, the Weber fraction of one interval; the floor of forces to first
   /// order. Scaled so that the log of the level changes the log of the percept by 1.

@@ -15,7 +15,7 @@ class Table;
 namespace haptrial::subject {
 
 /// The keys of [observer] that describe senses and decisions. Each may be left out, which is the
-/// default for everybody. bias_first, repetition and drift are shifts (variation.h), and so is the
+/// default for everybody. bias_first, repetition and drift are shifts (population.h), and so is the
 /// criterion of a judge that is not logarithmic.
 const Schema<Population<SenseParameters>>& sense_schema();
 const Schema<Population<JudgementParameters>>& judgement_schema(bool logarithmic);

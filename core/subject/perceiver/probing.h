@@ -7,7 +7,7 @@
 #include "core/base/point_state.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/hand_parameters.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 #include "core/subject/perceiver/contour.h"
 #include "core/subject/perceiver/palpation.h"
 

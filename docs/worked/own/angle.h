@@ -11,7 +11,6 @@
 #include "core/questions/kind_parts.h"
 #include "core/questions/question_kind.h"
 #include "core/questions/question_kinds.h"
-#include "core/questions/scale_kind.h"
 
 /// A kind of question, for pages and trials: an angle that arrow keys turn.
 namespace own {

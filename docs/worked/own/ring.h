@@ -5,7 +5,7 @@
 #include "core/base/definition/schema.h"
 #include "core/contact/field_renderers.h"
 #include "core/contact/renderer_kinds.h"
-#include "core/scene/read/field_bounds.h"
+#include "core/scene/read/field_kinds.h"
 #include "core/scene/read/shape_kinds.h"
 
 /// A shape, a ring for regions and fields, and a renderer, a spring to the nearest triangle of a

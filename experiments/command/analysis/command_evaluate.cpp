@@ -11,7 +11,7 @@
 
 #include "analysis/contact/demo_study/demo_study_report.h"
 #include "analysis/contact/evaluation/check_body.h"
-#include "analysis/contact/evaluation/write_evaluation.h"
+#include "analysis/contact/evaluation/evaluation_report.h"
 #include "analysis/contact/recording/read_recording.h"
 #include "analysis/contact/recording/session_contact.h"
 #include "analysis/document/recorded_times.h"

@@ -13,7 +13,6 @@
 #include "core/base/error.h"
 #include "experiments/command/program_words.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 
 namespace haptrial::experiments {

@@ -12,7 +12,6 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/curves/curve_commands.h"
-#include "experiments/command/curves/export_watch.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 #include "experiments/runner/version.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analysis/statistics/tests/power.h"
-#include "analysis/statistics/tests/repeated_power.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "experiments/command/subcommand.h"

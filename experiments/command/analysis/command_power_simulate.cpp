@@ -8,10 +8,9 @@
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/power/power_run.h"
-#include "experiments/study/launch_rank.h"
+#include "experiments/study/unit_locks.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

@@ -38,8 +38,8 @@ void cut_away(bone::BoneVolume& volume, const std::vector<bool>& spared, Outside
   const double around = 0.5 * std::sqrt(3.0) * (bone::BoneVolume::kEdge + 1) * grid.spacing;
   for (std::int32_t brick = 1; brick < volume.bricks(); ++brick) {
     const bone::Voxel first = volume.brick_origin(brick);
-    const Eigen::Vector3d middle = grid.centre(first.x(), first.y(), first.z()) +
-                                   Eigen::Vector3d::Constant(3.5 * grid.spacing);
+    const Eigen::Vector3d middle =
+        grid.centre(first) + Eigen::Vector3d::Constant(3.5 * grid.spacing);
     if (outside(middle) > around) {
       continue;
     }
@@ -49,7 +49,7 @@ void cut_away(bone::BoneVolume& volume, const std::vector<bool>& spared, Outside
       if (volume.density(at) == 0.0F || (label < spared.size() && spared[label])) {
         continue;
       }
-      const double off = outside(grid.centre(voxel.x(), voxel.y(), voxel.z()));
+      const double off = outside(grid.centre(voxel));
       const double share = std::clamp(0.5 + off / grid.spacing, 0.0, 1.0);
       const float left = share < 1.0 ? static_cast<float>(share) * volume.original(at) : 1.0F;
       volume.take(at, std::max(0.0F, volume.density(at) - left));

@@ -16,7 +16,7 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/mesh_command.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 #include "protocols/bone_drilling/drilled_bone.h"
 
 namespace haptrial::experiments {

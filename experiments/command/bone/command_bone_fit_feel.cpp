@@ -9,6 +9,7 @@
 #include "core/base/definition/given_values.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/nearest.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"

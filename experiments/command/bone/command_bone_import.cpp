@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/base/scratch_folder.h"
-#include "core/bone/model/crop.h"
+#include "core/bone/model/bone_model.h"
 #include "core/bone/model/tidy.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/bone/bone_carving.h"

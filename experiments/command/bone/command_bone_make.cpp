@@ -5,9 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"
-#include "core/bone/data/ear_variants.h"
-#include "core/bone/data/mandible.h"
-#include "core/bone/data/temporal_bone.h"
+#include "core/bone/data/procedural_bone.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/bone/bone_carving.h"
 #include "experiments/command/bone/bone_options.h"

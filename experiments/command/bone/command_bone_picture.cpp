@@ -72,16 +72,11 @@ Eigen::Vector3d vector_of(const char* name, const std::vector<double>& numbers) 
 
 Eigen::AlignedBox3d box_of(const bone::BoneModel& model) {
   Eigen::AlignedBox3d box;
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] != 0) {
-          box.extend(model.grid.centre(i, j, k));
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.labels[at] != 0) {
+      box.extend(model.grid.centre(voxel));
     }
-  }
+  });
   if (box.isEmpty()) {
     throw InputError("the bone is empty; choose one with at least one voxel");
   }

@@ -6,7 +6,7 @@
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/studies/drilling/learn_limits.h"
+#include "experiments/studies/drilling/learn_score.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -24,7 +24,6 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/drilling/drilling_study.h"

@@ -7,7 +7,7 @@
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/files/new_folder.h"
 #include "analysis/force_training/exchange/import_checks.h"
-#include "analysis/force_training/report/recall_figure.h"
+#include "analysis/force_training/report/recall_frequency_findings.h"
 #include "analysis/force_training/score/curve_csv.h"
 #include "analysis/force_training/score/score.h"
 #include "core/base/error.h"

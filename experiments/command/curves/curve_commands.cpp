@@ -9,12 +9,10 @@
 #include "analysis/force_training/exchange/import_curves.h"
 #include "analysis/force_training/report/write_analysis.h"
 #include "analysis/force_training/study/study.h"
-#include "analysis/force_training/study/study_summary.h"
+#include "analysis/force_training/study/study_result.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/curves/export_watch.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
@@ -22,6 +20,7 @@
 #include "experiments/study/study_files.h"
 
 namespace haptrial::experiments {
+
 namespace fs = std::filesystem;
 namespace {
 
@@ -109,6 +108,19 @@ void export_curves(const std::string& folder, const std::vector<fs::path>& given
                                             [&](std::uint64_t samples) { watch(samples); });
   fmt::print("{} of {}\ncurves: {}\n", counted(done.trials, "scored trial"),
              counted(done.subjects, "participant"), folder);
+}
+
+ExportWatch::ExportWatch(const std::vector<std::filesystem::path>& files)
+    : sessions_(exchange::sessions_to_export(files)),
+      progress_("export", static_cast<double>(exchange::total_samples(sessions_))) {}
+
+void ExportWatch::operator()(std::uint64_t samples) {
+  if (interrupted()) {
+    throw RunError("interrupted; nothing was exported");
+  }
+  progress_.update(static_cast<double>(samples),
+                   fmt::format("{:.1f} million samples", 1e-6 * static_cast<double>(samples)),
+                   sessions_.front().info.rate);
 }
 
 }  // namespace haptrial::experiments

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "analysis/exchange/export_sessions.h"
+#include "experiments/control/progress.h"
 
 namespace haptrial::experiments {
 
@@ -28,5 +32,17 @@ std::vector<std::string> analyze_curves(const CurveOptions& options, int paper, 
 /// haptrial export --curves. @throws InputError for a session whose passes have no target force
 void export_curves(const std::string& folder, const std::vector<std::filesystem::path>& files,
                    int jobs);
+
+/// Shows how far an export is; an interrupt ends it.
+class ExportWatch {
+ public:
+  explicit ExportWatch(const std::vector<std::filesystem::path>& files);
+  /// @param samples  written so far. @throws RunError on an interrupt
+  void operator()(std::uint64_t samples);
+
+ private:
+  std::vector<exchange::ExportSession> sessions_;
+  Progress progress_;
+};
 
 }  // namespace haptrial::experiments

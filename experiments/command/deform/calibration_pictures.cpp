@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/document/embedded_png.h"
+#include "analysis/document/html.h"
 #include "core/render/gl/image.h"
 #include "core/render/mesh/scene.h"
 

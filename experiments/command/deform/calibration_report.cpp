@@ -12,8 +12,8 @@
 #include "analysis/files/new_folder.h"
 #include "core/base/file_text.h"
 #include "core/deformable/springs/constants_table.h"
-#include "experiments/command/deform/calibration_journal.h"
 #include "experiments/command/deform/calibration_pictures.h"
+#include "experiments/command/deform/calibration_run.h"
 #include "experiments/command/deform/deform_files.h"
 
 namespace haptrial::experiments {

@@ -2,6 +2,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -50,5 +53,29 @@ double seen_error(const CalibrationRun& run, bool by_hand);
 /// The error found as a share of the motion, the mean over the loads of one part; NaN without any,
 /// infinite: unstable.
 double share_left(const CalibrationRun& run, LoadPart part);
+
+/// The evaluations of a calibration in a file that grows by one line each, so that a run that was
+/// killed goes on. A line that was not finished is left out.
+class CalibrationJournal {
+ public:
+  /// @param what  a number that differs for another body, load, search or reference
+  /// @throws InputError where the file is another calibration's, or is no journal.
+  CalibrationJournal(std::filesystem::path file, std::uint64_t what, std::size_t parameters);
+
+  const std::vector<deformable::CalibrationStep>& known() const { return known_; }
+  /// @throws RunError when the disk is full.
+  void add(const deformable::CalibrationStep& step);
+  /// The file is not needed any more.
+  void remove();
+
+ private:
+  void read(const std::string& text, const std::string& head, std::size_t parameters);
+  std::filesystem::path file_;
+  std::vector<deformable::CalibrationStep> known_;
+  std::ofstream out_;
+};
+
+/// A table of evaluations: error [mm], best so far, what was unstable, and the logarithms.
+std::string evaluations_csv(const std::vector<deformable::CalibrationStep>& steps);
 
 }  // namespace haptrial::experiments

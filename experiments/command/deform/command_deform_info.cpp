@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/deformable/body/fastest_vibration.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/subcommand.h"

@@ -11,8 +11,8 @@
 #include "core/base/nearest.h"
 #include "core/deformable/body/mesh_parts.h"
 #include "core/deformable/elements/dynamic_solver.h"
-#include "core/deformable/springs/settle.h"
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_motion.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/deform/deform_body.h"
 #include "experiments/command/deform/deform_files.h"
@@ -63,7 +63,7 @@ class SpringStepper : public Stepper {
   }
   void step() override { motion_.step(); }
   double time() const override { return motion_.time(); }
-  double fastest() const override { return motion_.activity().max_speed; }
+  double fastest() const override { return motion_.fastest(); }
   Places displacement() const override {
     Places u = motion_.positions();
     for (std::size_t v = 0; v < u.size(); ++v) {
@@ -199,17 +199,18 @@ int deform_simulate(const DeformSimulateOptions& options) {
     out.write(fmt::format("frame-{:04}.csv", times.size()), displacements_csv(body.mesh, u));
     times.push_back(stepper->time());
   };
-  const deformable::RestCriterion criterion;
+  constexpr double kRestSpeed = 1e-5;  // [m/s]
+  constexpr double kRestTime = 0.01;   // below it [s]
   double quiet_since = 0.0;
   bool rests = false;
   write();
   while (stepper->time() < seconds && !rests) {
     stepper->step();
     inverted = std::max(inverted, stepper->inverted());
-    if (!(stepper->fastest() < criterion.below.max_speed)) {
+    if (!(stepper->fastest() < kRestSpeed)) {
       quiet_since = stepper->time();
     }
-    rests = options.to_rest && stepper->time() - quiet_since >= criterion.lasting;
+    rests = options.to_rest && stepper->time() - quiet_since >= kRestTime;
     if (stepper->time() >= seconds * static_cast<double>(times.size()) / frames) {
       write();
     }

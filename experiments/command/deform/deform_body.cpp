@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 

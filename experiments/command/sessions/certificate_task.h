@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "analysis/device/certificate_record.h"
+#include "analysis/device/excitation.h"
 #include "core/device/device.h"
 #include "core/device/envelope.h"
 #include "core/device/force_sensor.h"
 #include "core/device/handle_part.h"
 #include "core/realtime/servo_loop.h"
+#include "experiments/command/sessions/device_bench.h"
+#include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
 
@@ -109,5 +112,21 @@ class CertificateTask final : public realtime::ServoTask {
   std::atomic<bool> stopped_{false};
   std::atomic<analysis::CertificatePart> shown_{analysis::CertificatePart::kDone};
 };
+
+/// How far a part is moved to either side at the fingers [m].
+double reach_of(device::Part part, double radius, double workspace_radius);
+
+/// The commands for a part. @param most  force that the device gives there [N]
+analysis::Excitation excitation_of(const protocols::DeviceArm& arm,
+                                   const analysis::DrivenAxes& axes, double most,
+                                   double workspace_radius);
+
+/// The known load of a part; 0: none [kg].
+double load_of(const DeviceTestOptions& options, const protocols::DeviceArm& arm);
+
+/// The parts of a measurement without a sensor. A rotation or grip is not let go to be moved: its
+/// ways are too short to identify anything from.
+std::vector<analysis::CertificatePart> parts_without_sensor(const DeviceTestOptions& options,
+                                                            const protocols::DeviceArm& arm);
 
 }  // namespace haptrial::experiments

@@ -13,15 +13,14 @@
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
-#include "experiments/command/sessions/set_option.h"
+#include "experiments/command/sessions/run_options.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studies/experiment.h"
-#include "experiments/study/launch_rank.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/session_times.h"
 #include "experiments/study/study_run.h"
+#include "experiments/study/unit_locks.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
-#include "experiments/command/sessions/study_standing.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"

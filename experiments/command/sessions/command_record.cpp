@@ -15,7 +15,6 @@
 #include "core/record/hdf5/session_writer.h"
 #include "experiments/command/sessions/live_reading.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/runner/version.h"
 #include "experiments/studies/experiment.h"

@@ -9,11 +9,9 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
 #include "experiments/screen/video.h"
-#include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {

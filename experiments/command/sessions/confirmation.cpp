@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "core/base/error.h"
-#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -2,22 +2,101 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "core/channel/channel_options.h"
-#include "core/device/coupled_mass.h"
+#include "core/device/device.h"
+#include "core/device/envelope.h"
+#include "core/device/handle_physics.h"
 #include "core/device/mouse.h"
 #include "core/device/vendor_devices.h"
 #include "core/device/virtual_device.h"
+#include "core/realtime/servo_loop.h"
 #include "core/subject/hand_parameters.h"
-#include "experiments/command/sessions/device_check.h"
-#include "experiments/control/fatal_stop_handler.h"
-#include "protocols/definition/device_arm.h"
+#include "experiments/control/signals.h"
+#include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
+
+/// The parts of a device's check, in their order.
+enum class CheckPart : std::uint8_t { kRest, kMove, kPush, kButton, kDone };
+
+/// Result of a check.
+struct DeviceFindings {
+  device::Fault fault{device::Fault::kNone};
+  const char* trouble{""};                           // the device's own words for it
+  double rest_noise{0.0};                            // range of position at rest, largest axis [m]
+  Eigen::Vector3d lowest{Eigen::Vector3d::Zero()};   // reached while moved [m]
+  Eigen::Vector3d highest{Eigen::Vector3d::Zero()};  // [m]
+  double push_force{0.0};                            // of each step [N]
+  Eigen::Vector3d force_axes{Eigen::Vector3d::Ones()};  // of the device (DeviceInfo)
+  std::array<double, 6> yielded{};                      // along the push, +x -x +y -y +z -z [m]
+  bool pushed{false};                                   // every step was made
+  std::uint32_t buttons{0};                             // seen in the last part
+};
+
+/// A participant's worth of ticks against a device, behind the envelope like any protocol:
+///
+///     20% at rest, 40% moved about by hand, 30% small force steps, 10% a button
+///
+/// Servo thread: tick(). Any thread: part(). After the loop: findings().
+class DeviceCheck final : public realtime::ServoTask {
+ public:
+  /// Stands in for the person where there is none; called before every read, on the servo thread.
+  /// @param share  of the whole time, 0 to 1
+  using Hand = std::function<void(CheckPart part, double share)>;
+
+  /// @param device  outlives the check.  @param ticks  of the whole check, at least 100
+  DeviceCheck(device::Device& device, const device::EnvelopeLimits& limits, std::uint64_t ticks,
+              Hand hand = {});
+
+  bool tick(const realtime::Tick& tick) noexcept override;
+  /// Ends the check with a force of zero. Any thread, or a signal's handler.
+  void stop() noexcept { stop_.store(true, std::memory_order_relaxed); }
+  /// After stop(): whether the device was given the zero.
+  bool stopped() const noexcept { return stopped_.load(std::memory_order_acquire); }
+  CheckPart part() const noexcept { return part_.load(std::memory_order_relaxed); }
+  const DeviceFindings& findings() const noexcept { return findings_; }
+
+  /// When a part begins, as a share of the whole time.
+  static double start_of(CheckPart part) noexcept;
+
+ private:
+  Eigen::Vector3d push(double share, const Eigen::Vector3d& position) noexcept;
+  void note(CheckPart part, const device::DeviceReading& reading) noexcept;
+
+  device::Device& device_;
+  device::Envelope envelope_;
+  std::uint64_t ticks_;
+  std::uint64_t done_{0};
+  Hand hand_;
+  std::atomic<bool> stop_{false};
+  std::atomic<bool> stopped_{false};
+  std::atomic<CheckPart> part_{CheckPart::kRest};
+  DeviceFindings findings_;
+  bool has_rest_{false};
+  bool has_move_{false};
+  Eigen::Vector3d rest_low_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d rest_high_{Eigen::Vector3d::Zero()};
+  int step_{-1};                                     // of the pushes
+  Eigen::Vector3d before_{Eigen::Vector3d::Zero()};  // the push [m]
+};
+
+/// One line of a verdict.
+struct Verdict {
+  bool good{false};
+  std::string what;  // "rate", "lateness", ...
+  std::string text;  // figures, and what was expected where it is not good
+};
+
+/// @param reach  how far the tool has to have been to each side, along each axis [m]
+std::vector<Verdict> judge(const DeviceFindings& findings, const realtime::ServoLoop& loop,
+                           const Eigen::Vector3d& reach, bool has_button);
 
 inline constexpr double kDeviceTestRate = 1000.0;  // [Hz]
 

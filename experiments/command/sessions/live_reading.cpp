@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "core/channel/channel_set.h"
-#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace {

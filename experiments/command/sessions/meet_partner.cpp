@@ -12,7 +12,7 @@
 #include "core/tutoring/meeting.h"
 #include "core/tutoring/secret.h"
 #include "experiments/command/arguments.h"
-#include "experiments/control/interrupt.h"
+#include "experiments/control/signals.h"
 #include "experiments/runner/version.h"
 #include "protocols/interface/study_rules.h"
 

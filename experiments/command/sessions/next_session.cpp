@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,11 +9,14 @@
 #include <string>
 
 #include "core/base/counted.h"
+#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/run_checks.h"
+#include "experiments/studies/registry.h"
 #include "experiments/study/session_name.h"
+#include "experiments/study/study_files.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {
@@ -234,6 +236,34 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
   words +=
       options.case_name.empty() ? "" : (words.empty() ? "case " : ", case ") + options.case_name;
   return words;
+}
+
+std::optional<analysis::SequentialResult> study_standing(const Experiment& experiment,
+                                                         const std::filesystem::path& folder,
+                                                         int threads) {
+  Table root = experiment.definition->root();
+  const bool sequential = root.has("analysis") && root.table("analysis").has("sequential");
+  if (!sequential || !holds_sessions(folder)) {
+    return std::nullopt;
+  }
+  AnalysisRequest request;
+  request.folder = folder;
+  request.files = study_files(folder, Pilots::kLeftOut, protocol_of);
+  request.threads = threads;
+  return study_of(request.files.first).sequential(request);
+}
+
+bool has_ended(const std::optional<analysis::SequentialResult>& standing) {
+  return standing && standing->verdict != analysis::SequentialVerdict::kGoOn;
+}
+
+std::vector<RosterNext> next_sessions(const Roster& roster,
+                                      const std::optional<analysis::SequentialResult>& standing) {
+  std::vector<RosterNext> next = roster.next;
+  if (has_ended(standing)) {
+    std::erase_if(next, [](const RosterNext& each) { return each.fresh; });
+  }
+  return next;
 }
 
 }  // namespace haptrial::experiments

@@ -5,10 +5,19 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/given_values.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::protocols {
 struct Definition;
+}
+
+namespace CLI {
+class App;
+}
+
+namespace CLI {
+class App;
 }
 
 namespace haptrial::experiments {
@@ -54,5 +63,25 @@ std::string session_folder(const RunOptions& options);
 std::filesystem::path session_file(const RunOptions& options, const protocols::Definition& setup);
 /// Folder for backups: the option's, or the room's; empty: none.
 std::string backup_folder(const RunOptions& options, const protocols::Definition& setup);
+
+/// A session that has come to an end, or was stopped with trials left.
+struct RunEnd {
+  std::filesystem::path file;  // without ".partial"
+  std::string subject;
+  bool stopped{false};  // --resume goes on with it
+};
+
+/// DEFINITION and the options of `run`, which `start` has as well.
+void declare_run_options(CLI::App& app, RunOptions& options);
+
+/// Runs the session that the options ask for, of whoever is next if they name nobody, and makes its
+/// backup. @throws InputError, RunError
+RunEnd run_command(const RunOptions& options);
+
+/// Adds --set KEY=VALUE, which may be repeated. @param app, set  outlive each other
+void declare_set_option(CLI::App& app, std::vector<std::string>& set);
+
+/// The keys that --set gave. @throws InputError for a text that is not KEY=VALUE
+std::vector<GivenKey> given_keys(const std::vector<std::string>& set);
 
 }  // namespace haptrial::experiments

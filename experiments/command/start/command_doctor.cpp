@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/command/start/doctor_checks.h"
 #include "experiments/command/start/examples.h"
+#include "experiments/command/start/machine_checks.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 

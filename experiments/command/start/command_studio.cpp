@@ -12,7 +12,6 @@
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
-#include "experiments/control/interrupt.h"
 #include "experiments/control/signals.h"
 #include "experiments/studio/studio.h"
 

@@ -14,7 +14,6 @@
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
-#include "protocols/definition/program_words.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -13,8 +13,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "experiments/studies/mark_rule.h"
-#include "experiments/studies/plan_table.h"
+#include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
 

@@ -16,7 +16,7 @@
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
 #include "experiments/runner/version.h"
-#include "experiments/studies/plan_table.h"
+#include "experiments/studies/power_plan.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {

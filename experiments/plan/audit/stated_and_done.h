@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/document/finding.h"
-#include "experiments/plan/audit/study_facts.h"
+#include "experiments/plan/audit/study_methods.h"
 #include "experiments/plan/plan_log.h"
 
 namespace haptrial::experiments {

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "experiments/preview/preview.h"
+#include "experiments/preview/space_objects.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
+#include "protocols/bone_drilling/display/placement_legend.h"
 
 namespace haptrial::experiments {
 
@@ -21,5 +26,11 @@ void add_drilling_preview(const protocols::BoneDefinition& definition,
 /// @param definition  its bones need not be loaded
 void add_drilling_methods(const protocols::BoneDefinition& definition, std::uint64_t seed,
                           analysis::Document& document);
+
+/// The bone and each of its structures as lines where a hand feels them, in W. Made when it is
+/// first asked for; takes a second for a large bone.
+/// @param scale  from lengths of the bone to those of the hand
+std::shared_ptr<const std::vector<SpaceObject>> objects_of(const protocols::PlacedBone& bone,
+                                                           double scale);
 
 }  // namespace haptrial::experiments

@@ -5,13 +5,27 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/report/validity_study.h"
-#include "experiments/studies/drilling/procedure_setup.h"
+#include "analysis/learning/learning_plan.h"
 #include "experiments/studies/study.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
 
+namespace haptrial {
+class Table;
+}
+
+namespace haptrial::protocols {
+struct BoneDefinition;
+}
+
 namespace haptrial::experiments {
+
+/// Facts of a definition for metrics; the group is empty.
+analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
+/// The same from the definition in a session file.
+analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& session);
 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";
@@ -22,5 +36,10 @@ inline constexpr const char* kCheckedFile = "checklist.csv";
 /// Analyses drilling sessions. Ratings are in their folder.
 /// @returns lines for the terminal
 std::vector<std::string> analyze_drillings(const AnalysisRequest& request);
+
+/// Reads from [analysis] how a study says what was learned; problems are noted.
+/// @param definition  whose table it is; null if it cannot be read
+analysis::LearningPlan read_drilling_learning(Table& root,
+                                              const protocols::BoneDefinition* definition);
 
 }  // namespace haptrial::experiments

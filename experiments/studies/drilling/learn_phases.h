@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "analysis/bone_drilling/phases/phase_accuracy.h"
+#include "analysis/bone_drilling/phases/phase_labels.h"
 #include "analysis/bone_drilling/phases/phase_model.h"
 
 namespace haptrial::experiments {

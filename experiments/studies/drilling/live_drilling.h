@@ -10,13 +10,25 @@
 #include <thread>
 #include <vector>
 
+#include "analysis/bone_drilling/metrics/live.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
-#include "core/bone/record/drilling_types.h"
-#include "core/bone/record/fragment_rows.h"
+#include "core/bone/record/bone_rows.h"
+#include "core/bone/record/drilling_tables.h"
+#include "core/record/rows/live_figures.h"
 #include "core/record/rows/session_types.h"
-#include "experiments/studies/drilling/drilled_procedure.h"
 
 namespace haptrial::experiments {
+
+/// A procedure of a running session, or of one that has ended.
+struct DrilledProcedure {
+  int trial{0};  // from 1; 0 of practice
+  bool practice{false};
+  analysis::drilling::LiveFigures figures;
+};
+
+/// Figures of a procedure for people: in rows, and in one line, "procedure 1: 1:05, drilling 0:40,
+/// ...".
+record::LiveState state_of(const DrilledProcedure& procedure);
 
 /// Measures the drillings of a session while it runs. The session's thread gives it the rows that
 /// go into the file and never waits; a thread of its own measures them, ten times a second.

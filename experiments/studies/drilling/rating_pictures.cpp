@@ -7,7 +7,7 @@
 
 #include "experiments/screen/video.h"
 #include "protocols/bone_drilling/display/bone_display.h"
-#include "protocols/bone_drilling/display/bone_renderer.h"
+#include "protocols/bone_drilling/display/bone_pictures.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -18,7 +18,7 @@
 #include "core/subject/drilling/cavity_chart.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
-#include "protocols/bone_drilling/definition/smallest_burr.h"
+#include "protocols/bone_drilling/definition/placement.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -46,10 +46,9 @@ Floor floor_of(const bone::BoneModel& model, const std::vector<std::uint8_t>& st
       for (int layer = 0; layer < 2 * chart.size[2]; ++layer) {
         const double w = 0.5 * layer * chart.cell;
         const Eigen::Vector3d p = X_BW * chart.world({u * chart.cell, v * chart.cell, w});
-        const Eigen::Array3i at = ((p - grid.origin) / grid.spacing).array().round().cast<int>();
-        const bool inside = (at >= 0).all() && at.x() < grid.size[0] && at.y() < grid.size[1] &&
-                            at.z() < grid.size[2];
-        const std::size_t index = inside ? grid.index(at.x(), at.y(), at.z()) : 0;
+        const bone::Voxel at = grid.nearest(p);
+        const bool inside = grid.contains(at);
+        const std::size_t index = inside ? grid.index(at) : 0;
         if (inside && standing[index] != 0) {
           floor.depth[chart.column(u, v)] = static_cast<float>(w);
           floor.made[chart.column(u, v)] = bone_above;

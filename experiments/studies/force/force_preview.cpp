@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 
-#include "core/render/flat/frames.h"
+#include "core/render/flat/trial_display.h"
 #include "experiments/control/live_status.h"
-#include "experiments/preview/certified_part.h"
 #include "experiments/preview/fixed_plan.h"
 #include "experiments/preview/preview_pictures.h"
+#include "experiments/preview/trials_parts.h"
 #include "protocols/force_training/guided_passes.h"
 
 namespace haptrial::experiments {

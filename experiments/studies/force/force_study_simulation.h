@@ -1,11 +1,13 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <vector>
 
+#include "analysis/force_training/study/study.h"
 #include "core/base/definition/table.h"
 #include "experiments/studies/curve_analysis.h"
-#include "experiments/studies/study_simulation.h"
+#include "experiments/studies/study.h"
 #include "protocols/force_training/force_definition.h"
 
 namespace haptrial::experiments {
@@ -31,5 +33,13 @@ namespace haptrial::experiments {
 std::unique_ptr<StudySimulation> force_study_simulation(
     const protocols::ForceDefinition& definition, const std::string& asked_in,
     CurveAnalysis curves);
+
+/// Analyses the sessions of a force training: recalls right after training, and, if the definition
+/// has several sessions, the changes from a baseline to its tests.
+/// @throws InputError as analysis::analyze_study()
+analysis::StudyResult analyze_training(const protocols::ForceDefinition& definition,
+                                       const CurveAnalysis& curves,
+                                       const std::vector<std::filesystem::path>& files,
+                                       int threads);
 
 }  // namespace haptrial::experiments

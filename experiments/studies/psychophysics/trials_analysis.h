@@ -1,10 +1,17 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "analysis/psychophysics/fit/track_estimate.h"
 #include "analysis/psychophysics/fit/trials_plan.h"
+#include "analysis/psychophysics/study/trials_result.h"
+
+namespace haptrial::protocols {
+struct TrialsDefinition;
+}
 
 namespace haptrial::protocols {
 struct TrialsDefinition;
@@ -30,5 +37,13 @@ bool needs_judged_answers(const analysis::trials::TrialsPlan& plan);
 /// Begins the procedures of a definition anew, by the names that /levels has.
 /// @param definition  outlives it
 analysis::trials::ProcedureOf procedures_of(const protocols::TrialsDefinition& definition);
+
+/// Adds the quantities of kinds that look at what hands did or at pairs: "reaching", "pursuit",
+/// "produced" and "paired". Other kinds have theirs from the answers already.
+/// @param files  of the sessions in `result`
+/// @throws InputError as the analyses of these kinds do
+void add_file_quantities(const protocols::TrialsDefinition& definition,
+                         const std::vector<std::filesystem::path>& files, int threads,
+                         analysis::trials::TrialsResult& result);
 
 }  // namespace haptrial::experiments

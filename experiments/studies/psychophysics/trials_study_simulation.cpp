@@ -17,7 +17,7 @@
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "experiments/studies/power_plan.h"
-#include "experiments/studies/psychophysics/file_quantities.h"
+#include "experiments/studies/psychophysics/trials_analysis.h"
 #include "experiments/study/study_run.h"
 #include "protocols/psychophysics/response_session.h"
 

@@ -7,8 +7,8 @@
 #include "analysis/psychophysics/fit/track_estimate.h"
 #include "analysis/psychophysics/fit/trials_plan.h"
 #include "core/base/definition/table.h"
-#include "experiments/studies/study_simulation.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "experiments/studies/study.h"
+#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::experiments {
 

@@ -6,7 +6,6 @@
 
 #include "core/base/error.h"
 #include "protocols/bone_drilling/definition/bone_tables_internal.h"
-#include "protocols/bone_drilling/definition/cavity.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::protocols {

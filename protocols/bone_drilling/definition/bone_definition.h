@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
@@ -25,12 +26,32 @@
 #include "core/subject/drilling/drilling_surgeon.h"
 #include "core/subject/drilling/fragment_plan.h"
 #include "core/subject/drilling/osteotomy_hand.h"
-#include "protocols/bone_drilling/definition/drilling_parameters.h"
+#include "protocols/bone_drilling/definition/controls.h"
 #include "protocols/bone_drilling/definition/placement.h"
-#include "protocols/bone_drilling/definition/slice_window.h"
+#include "protocols/bone_drilling/definition/second_hand.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::protocols {
+
+/// How a device becomes a tool on the bone.
+struct DrillingParameters {
+  Controls controls;
+  /// Which way the handle runs, from the tip to the hand, in the frame of the device's orientation;
+  /// in W where the device senses none. Any length but 0.
+  Eigen::Vector3d handle{Eigen::Vector3d::UnitY()};
+  /// The device's workspace is this many times as large as the scene's: motions are scaled down by
+  /// it, forces are not. > 0
+  double scale{1.0};
+  double force_limit{10.0};                    // of what the device is asked for > 0 [N]
+  double time_limit{900.0};                    // of a drilling > 0 [s]
+  std::optional<SecondHandParameters> second;  // at a second device
+};
+
+/// Range of densities that the grey of a slice spans: `low` and below is black, `high` white.
+struct SliceWindow {
+  double low{0.0};
+  double high{1.0};  // > low
+};
 
 inline constexpr const char* kBoneDrilling = "bone_drilling";  // its name in [experiment]
 inline constexpr const char* kMonitor = "monitor";  // in conditions: "monitor on", "monitor off"

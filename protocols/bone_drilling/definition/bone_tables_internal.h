@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/subject/drilling/cavity_chart.h"
+
 namespace haptrial {
 template <class T>
 class Schema;
@@ -35,5 +37,8 @@ const Schema<subject::SurgeonParameters>& surgeon_schema();
 const Schema<BoneDefinition>& bone_sound_schema();
 /// The keys of [feedback].
 const Schema<BoneDefinition>& feedback_schema();
+
+/// The keys of [cavity]; every key is optional but `structures` goes with `margins`.
+const Schema<subject::CavityParameters>& cavity_schema();
 
 }  // namespace haptrial::protocols

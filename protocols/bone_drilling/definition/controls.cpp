@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/base/definition/schema.h"
-#include "protocols/definition/window_keys.h"
+#include "protocols/definition/button_uses.h"
 
 namespace haptrial::protocols {
 

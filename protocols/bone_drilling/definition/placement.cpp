@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
 #include "core/subject/drilling/cavity_chart.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -68,9 +71,7 @@ std::string advice(const bone::BoneModel& bone) {
 }  // namespace
 
 Eigen::Isometry3d pose_of(const BonePlacement& placement, const geometry::VoxelGrid& grid) {
-  const Eigen::Vector3d middle =
-      0.5 *
-      (grid.centre(0, 0, 0) + grid.centre(grid.size[0] - 1, grid.size[1] - 1, grid.size[2] - 1));
+  const Eigen::Vector3d middle = 0.5 * (grid.centre(0, 0, 0) + grid.centre(grid.last()));
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = placement.turn;
   pose.translation() = placement.centre - placement.turn * middle;
@@ -120,16 +121,22 @@ void check_placement(const BonePlacement& placement, const bone::BoneModel& bone
                                  advice(bone)));
   }
   const Eigen::Vector3d eye = pose_of(placement, bone.grid).inverse() * camera.eye;
-  const Eigen::Vector3i at =
-      ((eye - bone.grid.origin) / bone.grid.spacing).array().round().cast<int>();
-  const Eigen::Vector3i size(bone.grid.size[0], bone.grid.size[1], bone.grid.size[2]);
-  if ((at.array() >= 0).all() && (at.array() < size.array()).all() &&
-      bone.labels[bone.grid.index(at.x(), at.y(), at.z())] != 0) {
+  const bone::Voxel at = bone.grid.nearest(eye);
+  if (bone.grid.contains(at) && bone.labels[bone.grid.index(at)] != 0) {
     throw InputError(
         fmt::format("{}: the camera's eye would begin in the bone; move camera.eye "
                     "outwards",
                     named(bone)));
   }
+}
+
+double smallest_burr(const BoneDefinition& d) {
+  double radius = 1.0;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    const auto* burr = tool.as<bone::BurrTool>();
+    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
+  }
+  return radius;
 }
 
 }  // namespace haptrial::protocols

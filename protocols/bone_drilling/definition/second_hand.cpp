@@ -1,7 +1,6 @@
 #include "protocols/bone_drilling/definition/second_hand.h"
 
 #include "core/base/definition/schema.h"
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 
 namespace haptrial::protocols {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/bone/model/nearest_structure.h"
+#include "core/bone/model/distance_field.h"
 #include "core/bone/simulator/plate_shapes.h"
 #include "core/bone/simulator/saw.h"
 #include "core/render/bone/bone_tools.h"

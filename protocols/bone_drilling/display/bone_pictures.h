@@ -6,12 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "core/bone/simulator/drilling_view.h"
 #include "core/render/gl/image.h"
+#include "core/render/gl/offscreen.h"
 #include "core/stimulus/observer.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_display.h"
-#include "protocols/bone_drilling/display/bone_renderer.h"
+#include "protocols/bone_drilling/display/bone_stage.h"
 
 namespace haptrial::protocols {
+
+/// Draws a stage off screen; stills are made when the first is called up. The definition outlives
+/// it.
+class BoneRenderer {
+ public:
+  BoneRenderer(const BoneDefinition& definition, std::shared_ptr<const BoneStage> stage);
+  render::Image draw(const bone::DrillingView& seen);
+
+ private:
+  const BoneDefinition& definition_;
+  std::shared_ptr<const BoneStage> stage_;
+  bool has_stills_{false};
+  render::OffscreenContext context_;
+  BoneDisplay display_;
+};
 
 /// Pictures of a drilling at evenly spaced moments of its time limit, for a session on a simulated
 /// clock: they are drawn at their moment, for the bone does not stay as it is.

@@ -65,12 +65,7 @@ BoneSound::BoneSound(const BoneDefinition& definition, std::uint64_t seed,
               }),
       tools_(definition.simulator.tools),
       thin_(std::move(thin)),
-      thread_([this] { run(); }) {}
-
-BoneSound::~BoneSound() {
-  stop_.store(true, std::memory_order_relaxed);
-  thread_.join();
-}
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 void BoneSound::listen_to(std::shared_ptr<const BoneStage> stage) {
   const std::lock_guard lock(mutex_);
@@ -89,10 +84,10 @@ void BoneSound::observe(const stimulus::Shown& shown, const stimulus::Forces&, d
   output_.set(state);
 }
 
-void BoneSound::run() {
+void BoneSound::run(const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetween{20};
   bone::DrillingView seen;
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     std::shared_ptr<const BoneStage> stage;
     {
       const std::lock_guard lock(mutex_);

@@ -11,7 +11,7 @@
 #include "core/bone/hint/chime.h"
 #include "core/bone/model/thickness.h"
 #include "core/realtime/latest_value.h"
-#include "core/sound/sound_output.h"
+#include "core/sound/drill_sound.h"
 #include "core/stimulus/observer.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_stage.h"
@@ -59,7 +59,6 @@ class BoneSound final : public stimulus::Observer {
   /// @throws RunError where there is no sound card.
   BoneSound(const BoneDefinition& definition, std::uint64_t seed, sound::SoundOutput::Mix mix = {},
             ThinBoneNow thin = {});
-  ~BoneSound() override;
 
   /// Which bone is drilled from now on.
   void listen_to(std::shared_ptr<const BoneStage> stage);
@@ -67,7 +66,7 @@ class BoneSound final : public stimulus::Observer {
                double dt) noexcept override;
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
 
   InjuryChime injury_;
   sound::SoundOutput output_;
@@ -77,8 +76,7 @@ class BoneSound final : public stimulus::Observer {
   std::atomic<double> thickness_{1.0};  // [m]
   std::mutex mutex_;                    // never taken by the servo thread
   std::shared_ptr<const BoneStage> stage_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it ends before what it uses
 };
 
 }  // namespace haptrial::protocols

@@ -38,8 +38,7 @@ bone::Voxel CtSlices::voxel_at(const Plane& plane, const Eigen::Vector3d& tip_B,
   Eigen::Vector3d p_B = tip_B;
   p_B[plane.across] += kPixel * (x - kSide / 2);
   p_B[plane.down] += kPixel * (plane.upside_down ? kSide / 2 - y : y - kSide / 2);
-  const geometry::VoxelGrid& grid = model_->grid;
-  return ((p_B - grid.origin) / grid.spacing).array().round().cast<int>();
+  return model_->grid.nearest(p_B);
 }
 
 /// The structure that stands in a voxel; 0 for air, drilled bone and places outside the grid.

@@ -8,7 +8,7 @@
 
 #include "core/bone/model/bone_volume.h"
 #include "core/render/gl/image.h"
-#include "protocols/bone_drilling/definition/slice_window.h"
+#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
 

@@ -14,6 +14,20 @@
 #include "core/render/flat/text.h"
 
 namespace haptrial::protocols {
+
+PlacedBone placed_bone(const BoneDefinition& d, std::size_t bone) {
+  PlacedBone placed{d.bones[bone],   d.placement,      d.mirror, d.simulator.camera.start,
+                    d.display.width, d.display.height, {},       {},
+                    smallest_burr(d)};
+  if (d.cavity) {
+    placed.beside = d.cavity->beside;
+  }
+  if (!d.charts.empty()) {
+    placed.cavity = d.charts[bone];
+  }
+  return placed;
+}
+
 namespace {
 
 constexpr double kFirstRow = 5.0;                        // of names, from the top [em]
@@ -30,16 +44,11 @@ Eigen::Vector2d pixel_of(const Camera& camera, const Eigen::Vector3d& p_W, int w
 
 template <class Visit>
 void each_voxel(const bone::BoneModel& model, Visit&& visit) {
-  std::size_t at = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-        if (model.labels[at] != 0) {
-          visit(model.grid.centre(i, j, k), at);
-        }
-      }
+  geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+    if (model.labels[at] != 0) {
+      visit(model.grid.centre(voxel), at);
     }
-  }
+  });
 }
 
 /// Voxel of each label that is nearest to the middle of all of its voxels; none if it has no voxel.

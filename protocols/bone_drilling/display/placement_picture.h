@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/render/gl/image.h"
-#include "protocols/bone_drilling/display/placed_bone.h"
+#include "protocols/bone_drilling/display/placement_legend.h"
 
 namespace haptrial::protocols {
 

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "protocols/bone_drilling/definition/smallest_burr.h"
+#include "protocols/bone_drilling/definition/placement.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -86,7 +86,7 @@ std::shared_ptr<const std::vector<render::Image>> PlanSection::at(const bone::Bo
     voxel[up_] = upwards_ ? image.height - 1 - y : y;
     for (int x = 0; x < image.width; ++x) {
       voxel[across_] = rightwards_ ? x : image.width - 1 - x;
-      const std::size_t index = grid.index(voxel.x(), voxel.y(), voxel.z());
+      const std::size_t index = grid.index(voxel);
       const bool stands = model_->labels[index] != 0 && volume.density(voxel) > 0.0F;
       const Rgb colour = colour_of(index, stands);
       image.rgb.insert(image.rgb.end(), colour.begin(), colour.end());

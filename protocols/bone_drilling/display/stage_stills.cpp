@@ -10,7 +10,7 @@
 #include "core/render/bone/bone_scene.h"
 #include "core/render/gl/offscreen.h"
 #include "core/subject/drilling/cavity_plan.h"
-#include "protocols/bone_drilling/definition/smallest_burr.h"
+#include "protocols/bone_drilling/definition/placement.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 
 namespace haptrial::protocols {
@@ -40,16 +40,11 @@ std::vector<StageStill> make_stills(const BoneDefinition& d, const bone::BoneMod
   std::vector<StageStill> stills;
   for (int stage = 0; stage < stages; ++stage) {
     const double share = static_cast<double>(stage) / (stages - 1);
-    std::size_t at = 0;
-    for (int k = 0; k < model.grid.size[2]; ++k) {
-      for (int j = 0; j < model.grid.size[1]; ++j) {
-        for (int i = 0; i < model.grid.size[0]; ++i, ++at) {
-          if (stage > 0 && subject::is_gone_at(depths[at], share, deepest)) {
-            volume.take(volume.address({i, j, k}), 1.0F);
-          }
-        }
+    geometry::visit_voxels(model.grid, [&](const bone::Voxel& voxel, std::size_t at) {
+      if (stage > 0 && subject::is_gone_at(depths[at], share, deepest)) {
+        volume.take(volume.address(voxel), 1.0F);
       }
-    }
+    });
     context.make_current();
     scene.draw(frame, kFiner * width, kFiner * height);
     stills.push_back({share, render::coarser(context.read(), kFiner)});

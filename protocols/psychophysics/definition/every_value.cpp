@@ -18,12 +18,11 @@
 #include "core/scene/scene.h"
 #include "protocols/psychophysics/definition/beginning_words.h"
 #include "protocols/psychophysics/definition/lead_words.h"
-#include "protocols/psychophysics/definition/picture_words.h"
 #include "protocols/psychophysics/definition/presented.h"
 #include "protocols/psychophysics/definition/read_definition.h"
 #include "protocols/psychophysics/definition/trial_values.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
-#include "protocols/psychophysics/objects/rigid_objects.h"
+#include "protocols/psychophysics/objects/object_files.h"
 
 namespace haptrial::protocols {
 namespace {

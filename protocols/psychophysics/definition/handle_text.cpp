@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/control/loop_margin.h"
 #include "core/scene/needed_damping.h"
-#include "protocols/definition/handle_loop.h"
+#include "protocols/definition/definition.h"
 #include "protocols/psychophysics/definition/presented.h"
 
 namespace haptrial::protocols {

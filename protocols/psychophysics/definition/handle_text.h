@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "protocols/definition/device_arm.h"
+#include "protocols/definition/definition.h"
 #include "protocols/psychophysics/definition/beginning_words.h"
-#include "protocols/psychophysics/definition/certificate_words.h"
 
 namespace haptrial::control {
 struct HandleLoop;

@@ -32,4 +32,20 @@ class LeadReport {
   std::map<std::string, std::string> beside_;  // by stage: the sentence
 };
 
+struct Presented;
+struct TrialsDefinition;
+
+/// Gathers the regions that stages show outside of the participant's picture.
+class PictureReport {
+ public:
+  explicit PictureReport(const TrialsDefinition& definition) : d_(definition) {}
+  void add(const Presented& presented);
+  /// A sentence for each region.
+  std::vector<std::string> warnings() const;
+
+ private:
+  const TrialsDefinition& d_;
+  std::map<std::string, double> outside_;  // by region: the extent that shows all of it [m]
+};
+
 }  // namespace haptrial::protocols

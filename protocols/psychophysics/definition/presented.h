@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/scene/field.h"
-#include "core/scene/read/read_region.h"
+#include "core/scene/read/shape_kinds.h"
 #include "protocols/psychophysics/definition/cursor_parameters.h"
 #include "protocols/psychophysics/definition/measure.h"
 #include "protocols/psychophysics/definition/moving_target.h"

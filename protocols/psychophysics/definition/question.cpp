@@ -10,11 +10,9 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
-#include "core/questions/choice_kind.h"
 #include "core/questions/question_kinds.h"
-#include "core/questions/scale_kind.h"
-#include "core/record/rows/response.h"
-#include "protocols/definition/window_keys.h"
+#include "core/record/rows/answer_rows.h"
+#include "protocols/definition/button_uses.h"
 
 namespace haptrial::protocols {
 namespace {

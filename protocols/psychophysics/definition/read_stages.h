@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "protocols/psychophysics/definition/stage.h"
+#include "protocols/psychophysics/definition/stage_machine.h"
 
 namespace haptrial {
 class RandomStream;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows/arm_row.h"
-#include "protocols/definition/device_arm.h"
+#include "core/record/rows/device_rows.h"
+#include "protocols/definition/definition.h"
 
 namespace haptrial {
 class Table;

@@ -10,9 +10,8 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/psychometric/definition/expectation.h"
-#include "core/record/rows/condition_label.h"
+#include "core/record/rows/trial_rows.h"
 #include "protocols/psychophysics/definition/only_seen.h"
-#include "protocols/psychophysics/definition/unmatched_literals.h"
 
 namespace haptrial::protocols {
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/record/rows/object_file_row.h"
+#include "core/record/rows/object_rows.h"
+#include "core/scene/field.h"
 #include "protocols/psychophysics/objects/trial_object.h"
 
 namespace haptrial::record {
@@ -20,5 +22,11 @@ std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& 
 /// @throws InputError naming the first file that is another one than it was recorded with
 void check_object_files(const record::SessionReader& recorded,
                         const std::vector<TrialObject>& objects, std::string_view to);
+
+/// Lines about the means that keep each rigid object among fields from shaking at the rate of the
+/// loop, or that nothing is proven of it; and that a body is a room.
+/// @param rate  of the servo loop [Hz]  @param damping  of the hand of the definition [N·s/m]
+std::vector<std::string> words_of_rigid_objects(const std::vector<scene::Field>& fields,
+                                                double rate, double damping);
 
 }  // namespace haptrial::protocols

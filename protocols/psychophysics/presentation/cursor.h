@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/subject/smooth_noise.h"
+#include "core/subject/noise.h"
 #include "protocols/psychophysics/definition/cursor_parameters.h"
 
 namespace haptrial::protocols {

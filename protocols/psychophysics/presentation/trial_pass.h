@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "core/realtime/block_log.h"
-#include "core/record/rows/contact_row.h"
-#include "core/record/rows/cursor_row.h"
-#include "core/record/rows/response.h"
-#include "core/record/rows/target_row.h"
+#include "core/record/rows/answer_rows.h"
+#include "core/record/rows/device_rows.h"
+#include "core/record/rows/object_rows.h"
 #include "core/scene/scene.h"
 #include "core/scene/shape.h"
 #include "protocols/interface/pass.h"
@@ -20,7 +19,6 @@
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/definition/stage_machine.h"
 #include "protocols/psychophysics/presentation/cursor.h"
-#include "protocols/psychophysics/presentation/left_decision.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 
 namespace haptrial::protocols {

@@ -9,6 +9,10 @@
 
 #include "core/base/child_process.h"
 
+namespace haptrial::record {
+class SessionReader;
+}
+
 namespace haptrial::protocols {
 
 /// The process of a script that is asked: a line of JSON on its standard input, and a line on its
@@ -64,5 +68,12 @@ class ScriptProcess {
   std::string heard_;  // without a line's end so far
   std::string said_;   // the last line that was no answer
 };
+
+struct ScriptPlan;
+
+/// Whether an earlier run of the session kept the script's text.
+/// @param event  the kind of event that holds it
+/// @throws InputError where its script was another one
+bool kept_before(const ScriptPlan& plan, const char* event, const record::SessionReader& earlier);
 
 }  // namespace haptrial::protocols

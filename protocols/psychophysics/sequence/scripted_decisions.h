@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "core/record/rows/response.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "protocols/psychophysics/definition/question.h"
 #include "protocols/psychophysics/definition/script_plan.h"
-#include "protocols/psychophysics/presentation/left_decision.h"
+#include "protocols/psychophysics/presentation/trial_view.h"
 #include "protocols/psychophysics/sequence/script_process.h"
 
 namespace haptrial::protocols {

@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/trial_rows.h"
-#include "protocols/psychophysics/sequence/kept_script.h"
+#include "protocols/psychophysics/sequence/script_process.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 
 namespace haptrial::protocols {
@@ -90,5 +91,38 @@ void ScriptedLevels::told(const std::string& name, const psychometric::Outcome& 
 }
 
 std::vector<std::string> ScriptedLevels::take_troubles() { return std::exchange(troubles_, {}); }
+
+namespace {
+
+LevelScript::Answer level_in(const std::string& line, std::size_t dimensions) {
+  using Json = nlohmann::json;
+  const Json said = Json::parse(line)["level"];
+  if (said.is_null()) {
+    return {std::nullopt, "it left the choice to the procedure"};
+  }
+  psychometric::Level level;
+  for (const Json& each : said.is_array() ? said : Json::array({said})) {
+    level.push_back(each.is_number() ? each.get<double>() : std::nan(""));
+  }
+  const bool finite = std::ranges::all_of(level, [](double each) { return std::isfinite(each); });
+  if (level.size() != dimensions || !finite) {
+    return {std::nullopt,
+            fmt::format("its level was {}, not {}", said.dump(),
+                        dimensions == 1 ? "a number" : fmt::format("{} numbers", dimensions))};
+  }
+  return {std::move(level), ""};
+}
+
+}  // namespace
+
+LevelScript::LevelScript(std::filesystem::path file, double deadline, double longest_start)
+    : process_(std::move(file), deadline, "level", longest_start) {}
+
+LevelScript::Answer LevelScript::ask(const std::string& question, std::size_t dimensions,
+                                     const std::function<void()>& pulse) {
+  const ScriptProcess::Reply reply = process_.ask(question, pulse);
+  return reply.line.empty() ? Answer{std::nullopt, reply.why_not}
+                            : level_in(reply.line, dimensions);
+}
 
 }  // namespace haptrial::protocols

@@ -1,19 +1,65 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/psychometric/procedure/procedure.h"
 #include "protocols/psychophysics/definition/script_plan.h"
-#include "protocols/psychophysics/sequence/level_chooser.h"
-#include "protocols/psychophysics/sequence/level_script.h"
+#include "protocols/psychophysics/definition/trials_definition.h"
+#include "protocols/psychophysics/sequence/script_process.h"
 
 namespace haptrial::record {
 class SessionReader;
 }
 
 namespace haptrial::protocols {
+
+/// A trial whose level is to be chosen.
+struct LevelQuestion {
+  int trial{1};  // of the study, or of practice
+  bool practice{false};
+  const std::string& name;  // of the track with its combination
+  const Track& track;
+  const psychometric::Level& proposed;  // by the track's own procedure
+};
+
+/// A chooser of other levels than the procedures ask for. Session's thread.
+class LevelChooser {
+ public:
+  virtual ~LevelChooser() = default;
+  /// @returns the level to ask for, with the dimensions of the proposed one
+  virtual psychometric::Level choose(const LevelQuestion& question) = 0;
+  /// Tells the chooser an outcome that the track's own procedure learns from, too.
+  virtual void told(const std::string& name, const psychometric::Outcome& outcome) = 0;
+};
+
+/// A script that is asked for levels: a line with "level" is its answer. One thread.
+class LevelScript {
+ public:
+  struct Answer {
+    std::optional<psychometric::Level> level;
+    std::string why_not;  // "it gave no level within 2 s"
+  };
+
+  /// @param deadline, longest_start  as of ScriptProcess [s]
+  LevelScript(std::filesystem::path file, double deadline,
+              double longest_start = ScriptProcess::kLongestStart);
+
+  void start_early() noexcept { process_.start_early(); }
+
+  /// @param question    one line, without its end
+  /// @param dimensions  of the level
+  /// @param pulse       called now and then while nothing comes; may throw
+  Answer ask(const std::string& question, std::size_t dimensions,
+             const std::function<void()>& pulse = {});
+
+ private:
+  ScriptProcess process_;
+};
 
 /// Events of a session whose levels a script chooses: its text, and why a level is not its own.
 inline constexpr const char* kScriptEvent = "level_script";

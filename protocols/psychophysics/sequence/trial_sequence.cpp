@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "core/base/random.h"
-#include "core/record/rows/condition_label.h"
-#include "protocols/psychophysics/definition/constrained_order.h"
+#include "core/record/rows/trial_rows.h"
+#include "protocols/psychophysics/definition/counterbalance.h"
 
 namespace haptrial::protocols {
 namespace {

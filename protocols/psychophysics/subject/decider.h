@@ -7,7 +7,7 @@
 #include "core/base/random.h"
 #include "core/subject/perceiver/judgement.h"
 #include "protocols/psychophysics/definition/question.h"
-#include "protocols/psychophysics/presentation/left_decision.h"
+#include "protocols/psychophysics/presentation/trial_view.h"
 #include "protocols/psychophysics/subject/observer_plan.h"
 
 namespace haptrial::protocols {

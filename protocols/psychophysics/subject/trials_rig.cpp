@@ -11,7 +11,7 @@
 #include "core/device/motor_faults.h"
 #include "core/questions/question_kind.h"
 #include "core/subject/hand.h"
-#include "core/subject/motor_noise.h"
+#include "core/subject/noise.h"
 #include "core/subject/perceiver/grip.h"
 #include "core/subject/perceiver/sense.h"
 #include "core/subject/perceiver/sight.h"
@@ -21,7 +21,6 @@
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/subject/answer_by_hand.h"
 #include "protocols/psychophysics/subject/decider.h"
-#include "protocols/psychophysics/subject/mark_by_hand.h"
 #include "protocols/psychophysics/subject/reach_adaptation.h"
 
 namespace haptrial::protocols {

@@ -11,7 +11,6 @@
 #include "protocols/definition/definition.h"
 #include "protocols/interface/rig.h"
 #include "protocols/psychophysics/definition/cursor_parameters.h"
-#include "protocols/psychophysics/presentation/left_decision.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 #include "protocols/psychophysics/subject/observer_plan.h"
 

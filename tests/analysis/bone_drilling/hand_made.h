@@ -22,7 +22,7 @@ inline bone::BoneModel block(int x, int y, int z) {
 
 /// Gives a voxel a label; 0 takes it away.
 inline void mark(bone::BoneModel& model, const bone::Voxel& v, std::uint8_t label) {
-  model.labels[model.grid.index(v.x(), v.y(), v.z())] = label;
+  model.labels[model.grid.index(v)] = label;
 }
 
 /// One tool, a burr of 2 mm; a tick a millisecond.
@@ -51,9 +51,9 @@ inline void remove_in_turn(analysis::drilling::Procedure& p, const std::vector<b
                            double force = 0.5, double speed = 0.02) {
   for (const bone::Voxel& v : voxels) {
     const std::uint64_t sequence = p.ticks.empty() ? 0 : p.ticks.back().sequence + 1;
-    const Eigen::Vector3d centre = p.bone->grid.centre(v.x(), v.y(), v.z());
+    const Eigen::Vector3d centre = p.bone->grid.centre(v);
     p.ticks.push_back(drilling_tick(sequence, p.pose_WB * centre, force));
-    const std::uint8_t label = p.bone->labels[p.bone->grid.index(v.x(), v.y(), v.z())];
+    const std::uint8_t label = p.bone->labels[p.bone->grid.index(v)];
     p.removals.push_back({sequence, v, label, force, speed});
   }
 }

@@ -1,12 +1,14 @@
-#include "analysis/document/finding.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/document/figure_gnuplot.h"
+#include "analysis/document/finding.h"
 #include "analysis/document/finding_json_internal.h"
+#include "core/base/file_text.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -128,6 +130,43 @@ TEST(FindingTest, ListsStandBeforeTheMethods) {
             R"("estimate":0.25}},"tables":{"people":[{"participant":"P01","way":{"title":"way",)"
             R"("estimate":0.25,"low_95":0.125,"high_95":0.5,"unit":"m"},"passes":12}]},)"
             R"("figures":["ways"]}})");
+}
+
+}  // namespace
+
+// Figures without files that stay are the same pictures as those of a report.
+
+namespace {
+
+Figure small_figure(const std::string& name) {
+  Figure figure;
+  figure.name = name;
+  figure.title = "a title";
+  figure.simulated = true;
+  figure.series = {{"a series", Mark::kLine, {}, {0.0, 1.0}, {0.0, 2.0}}};
+  return figure;
+}
+
+TEST(DrawnTest, PicturesAreThoseOfAReport) {
+  const std::vector<Figure> figures{small_figure("one"), small_figure("two")};
+  const test::TemporaryFolder folder;
+  draw_figures(figures, folder.path());
+  const std::vector<Drawing> drawings = drawn(figures);
+  ASSERT_EQ(2U, drawings.size());
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    EXPECT_EQ(drawings[i].figure.name, figures[i].name);
+    EXPECT_EQ(drawings[i].svg, file_text(folder / (figures[i].name + ".svg")));
+  }
+  EXPECT_TRUE(drawn({}).empty());
+}
+
+/// gnuplot takes the names of ticks for formats.
+TEST(DrawnTest, NamesOfTicksAreDrawnAsTheyAre) {
+  Figure figure = small_figure("names");
+  figure.x_names = {{0.0, "half, 50 %"}, {1.0, "all of 100%d"}};
+  const std::vector<Drawing> drawings = drawn({figure});
+  EXPECT_NE(drawings.at(0).svg.find("half, 50 %"), std::string::npos);
+  EXPECT_NE(drawings.at(0).svg.find("all of 100%d"), std::string::npos);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/record/rows/device_row.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::exchange {

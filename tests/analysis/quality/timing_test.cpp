@@ -1,12 +1,17 @@
-#include "analysis/quality/timing.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
+#include "analysis/quality/channel_quality.h"
+#include "analysis/quality/timing.h"
 #include "core/base/random.h"
+#include "core/channel/channel_row.h"
+#include "core/record/hdf5/session_writer.h"
+#include "core/record/read/session_reader.h"
+#include "tests/support/temporary_folder.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -55,5 +60,49 @@ TEST(Percentiles, OfNothingAreNotDefined) {
   EXPECT_FALSE(percentiles(bins(3, 10), &record::TimingRow::period_count));
 }
 
+using channel::Incident;
+
+TEST(ChannelQualityTest, TheRateIsThatOfTheTimeInWhichTheChannelWasThere) {
+  const test::TemporaryFolder folder;
+  const channel::ChannelTable grip("grip", {{"force", "N"}}, 64);
+  std::vector<channel::ChannelRow> rows(601);  // 100 a second, silent for 4 s after three
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].sample = i;
+    rows[i].time_ns = 10'000'000 * static_cast<std::int64_t>(i) + (i > 300 ? 4'000'000'000 : 0);
+  }
+  // Before the first sample, in the silence, and while samples go on.
+  const std::vector<channel::IncidentRow> incidents{
+      {-2'000'000'000, "grip", Incident::kLost, 0.0, "no connection"},
+      {-500'000'000, "grip", Incident::kBack, 1.5, ""},
+      {8'503'000'000, "grip", Incident::kLost, 0.0, "no numbers come any more"},
+      {8'703'000'000, "grip", Incident::kBack, 0.2, ""},
+      {4'000'000'000, "grip", Incident::kLost, 0.0, "no data come any more"},
+      {7'010'000'000, "grip", Incident::kBack, 3.0, ""},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(256, 'w')},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, std::string(44, 'w')},
+      {7'500'000'000, "grip", Incident::kMessage, 0.0, "warm"},
+      {7'600'000'000, "grip", Incident::kStatus, 3.0, "hot"},
+      {7'700'000'000, "grip", Incident::kStatus, 0.0, "healthy"}};
+  record::SessionInfo info;
+  info.subject = "P1";
+  record::SessionWriter writer(folder / "a.h5", info,
+                               {&grip.table(), &record::table_of<channel::IncidentRow>()});
+  writer.add(record::Rows(grip.table(), rows.data(), rows.size()));
+  writer.add(std::span<const channel::IncidentRow>(incidents));
+  writer.set_timing({}, {0, 0, 0});
+  writer.close();
+  const record::SessionReader reader(folder / "a.h5");
+  const std::vector<ChannelQuality> all = channel_quality(reader);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NEAR(all[0].rate(), 100.0, 1e-9);
+  EXPECT_NEAR(all[0].seconds, 10.0, 1e-9);
+  EXPECT_NEAR(all[0].silence, 4.01 + 0.01, 1e-9);
+  EXPECT_EQ(all[0].losses, 3u);
+  EXPECT_EQ(all[0].messages, 2u);
+  EXPECT_EQ(all[0].faults, 1u);
+  EXPECT_EQ(channel_incidents(reader)[6].text, std::string(300, 'w'));
+}
+
 }  // namespace
+
 }  // namespace haptrial::analysis

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "analysis/statistics/tests/shapiro_wilk.h"
-#include "analysis/statistics/variance/levene.h"
+#include "analysis/statistics/variance/anova.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis::checks_test {

@@ -12,7 +12,6 @@
 #include "analysis/statistics/tests/permutation.h"
 #include "analysis/statistics/tests/power.h"
 #include "analysis/statistics/variance/effect_size.h"
-#include "analysis/statistics/variance/generalized_eta.h"
 #include "tests/analysis/statistics/degenerate_samples.h"
 
 namespace haptrial::analysis::degenerate_models_test {
@@ -93,10 +92,8 @@ TEST(DegenerateData, GiveNumbersOrASentenceInEffectSizesAndResampling) {
       check("g, " + name(i, j), hedges_g(a, b));
       check("difference, " + name(i, j), bootstrap_difference(a, b, kFew));
       check("permutation, " + name(i, j), permutation_test(a, b, Tail::kTwoSided, kFew));
-      check("generalized, " + name(i, j), generalized_eta_squared_interval({a, b, a}, kFew));
       if (const auto anova = one_way_anova({a, b}); anova) {
         check("eta, " + name(i, j), eta_squared(*anova));
-        check("omega, " + name(i, j), omega_squared(*anova));
       }
       if (a.size() == b.size()) {
         check("d_z, " + name(i, j), cohens_dz(a, b));

@@ -7,7 +7,7 @@
 #include "analysis/statistics/tests/shapiro_wilk.h"
 #include "analysis/statistics/tests/t_tests.h"
 #include "analysis/statistics/tests/wilcoxon.h"
-#include "analysis/statistics/variance/levene.h"
+#include "analysis/statistics/variance/anova.h"
 #include "analysis/statistics/variance/rank_anova.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "tests/analysis/statistics/degenerate_samples.h"

@@ -1,6 +1,6 @@
 // The kind `line` against pseudo-terminals and pipes.
 
-#include "core/channel/line_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // The kind `lsl` against a stand-in for liblsl whose senders have clocks of their own.
 
-#include "core/channel/lsl_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // The kind `neon` against a phone's interface over HTTP.
 
-#include "core/channel/neon_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

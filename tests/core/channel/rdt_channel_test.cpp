@@ -1,4 +1,4 @@
-#include "core/channel/rdt_channel.h"
+#include "core/channel/channel_kinds.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/base/random.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/core/contact/hard_meshes.h"
 #include "tests/support/allocation_guard.h"

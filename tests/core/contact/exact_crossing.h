@@ -8,7 +8,7 @@
 
 #include "core/geometry/mesh/closest_point.h"
 #include "core/geometry/mesh/mesh.h"
-#include "core/geometry/mesh/mesh_bounds.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/mesh/predicates.h"
 
 namespace haptrial::contact {
@@ -71,8 +71,8 @@ inline bool segment_meets_triangle(const Eigen::Vector3d& p, const Eigen::Vector
   return left == 0 || right == 0;
 }
 
-/// Whether a closed mesh holds a point, decided without rounding: by the parity of the triangles that
-/// a segment to a far point crosses, one that meets no edge and no corner.
+/// Whether a closed mesh holds a point, decided without rounding: by the parity of the triangles
+/// that a segment to a far point crosses, one that meets no edge and no corner.
 inline bool holds(const geometry::Mesh& mesh, const Eigen::Vector3d& p) {
   using geometry::side_of_plane;
   const Eigen::AlignedBox3d box = geometry::bounds(mesh);

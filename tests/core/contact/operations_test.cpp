@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "core/base/random.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "core/geometry/mesh/procedural.h"
 
 namespace haptrial::contact {

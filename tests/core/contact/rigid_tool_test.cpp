@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "core/contact/contact_surface.h"
-#include "core/contact/sampled_distance.h"
+#include "core/contact/field_renderers.h"
 #include "core/geometry/mesh/procedural.h"
 #include "tests/support/allocation_guard.h"
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/base/random.h"
@@ -39,35 +38,13 @@ ChordQuery random_query(const ChordPack& pack, RandomStream& random) {
           known + std::abs(arc()),     std::abs(pack.x[3]) * random.uniform(0.0, 3.0)};
 }
 
-TEST(ChordKernelTest, EveryInstructionSetGivesTheSameBits) {
-  const ChordKernel plain = chord_kernel(InstructionSet::kBaseline);
-  RandomStream random(11, "chords");
-  int open = 0;
-  for (int trial = 0; trial < 20'000; ++trial) {
-    const ChordPack pack = random_pack(random);
-    const ChordQuery query = random_query(pack, random);
-    ChordLooks expected;
-    const unsigned wanted = plain.scan(pack, query, expected);
-    open += __builtin_popcount(wanted);
-    for (const InstructionSet set : available_instruction_sets()) {
-      ChordLooks looks;
-      EXPECT_EQ(chord_kernel(set).scan(pack, query, looks), wanted) << name_of(set);
-      EXPECT_EQ(std::memcmp(&looks, &expected, sizeof looks), 0) << name_of(set);
-      chord_kernel(set).measure(pack, query, looks);
-      EXPECT_EQ(std::memcmp(&looks, &expected, sizeof looks), 0) << name_of(set);
-    }
-  }
-  EXPECT_GT(open, 10'000);  // else the flags were not tried
-}
-
-TEST(ChordKernelTest, OpensTheNodesThatTheDefinitionNames) {
+TEST(CurveChordsTest, OpensTheNodesThatTheDefinitionNames) {
   RandomStream random(12, "nodes");
-  const ChordKernel kernel = chord_kernel();
   for (int trial = 0; trial < 20'000; ++trial) {
     const ChordPack pack = random_pack(random);
     const ChordQuery query = random_query(pack, random);
     ChordLooks looks;
-    const unsigned open = kernel.scan(pack, query, looks);
+    const unsigned open = scan_chords(pack, query, looks);
     for (std::size_t c = 0; c < kRun; ++c) {
       const double least = std::sqrt(looks.square[c]) - pack.stray[c];
       const bool in_window = pack.arc[c] <= query.high && pack.arc[c + 1] >= query.low;

@@ -156,37 +156,6 @@ TEST(CurveConstraintTest, TheDamperAlongTheCurveGrowsBeyondAnEnd) {
   }
 }
 
-TEST(CurveConstraintTest, AMovingCurveIsTheSameSeenFromIt) {
-  RandomStream random(2, "moving");
-  const SampledCurve curve(loop(2000));
-  CurveConstraint still(curve, {900.0, 100.0});
-  CurveConstraint moving(curve, {900.0, 100.0});
-  for (int i = 0; i < 500; ++i) {
-    const auto vector = [&](double size) {
-      return Vector3d(size * random.normal(), size * random.normal(), size * random.normal());
-    };
-    const double arc = curve.length() * random.uniform(0.1, 0.9);
-    const PointState tool{curve.at(arc).position + vector(1e-3), vector(0.1)};
-    CurveMotion motion;
-    motion.pose = Eigen::AngleAxisd(random.uniform(-3.0, 3.0), vector(1.0).normalized());
-    motion.pose.pretranslate(vector(0.3));
-    motion.velocity = vector(0.2);
-    motion.angular_velocity = vector(2.0);
-    moving.set_motion(motion);
-    still.start_at(arc);
-    moving.start_at(arc);
-    const Vector3d there = still.force(tool);
-    // The material of the curve under the tool moves; the tool has the same motion on top. The
-    // damper compares it with the material at the place, `lever` away from the tool.
-    const Vector3d at = motion.pose * tool.position;
-    const Vector3d place = motion.pose * still.place().position;
-    const Vector3d material =
-        motion.velocity + motion.angular_velocity.cross(place - motion.pose.translation());
-    const Vector3d here = moving.force({at, motion.pose.linear() * tool.velocity + material});
-    ASSERT_LT((here - motion.pose.linear() * there).norm(), 1e-9 * (1.0 + there.norm())) << i;
-  }
-}
-
 TEST(CurveConstraintTest, AToolThatIsNowhereFeelsNothing) {
   const SampledCurve curve(line());
   CurveConstraint constraint(curve, {900.0, 100.0});

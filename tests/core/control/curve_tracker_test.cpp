@@ -122,21 +122,17 @@ TEST(CurveTrackerTest, FollowsTheRuleOnRandomWays) {
 
 TEST(CurveTrackerTest, WhatItRemembersOfTheCurveAroundChangesNoAnswer) {
   // A tool that moves as a hand does, in small steps past strands that come near each other; beside
-  // it a tracker that remembers nothing. Now and then the curve bends.
+  // it a tracker that remembers nothing.
   RandomStream random(5, "memory");
   Points points = figure_of_eight(3000);
   for (Vector3d& p : points) {
     p += 2e-4 * Vector3d(random.normal(), random.normal(), random.normal());
   }
-  SampledCurve curve(points);
+  const SampledCurve curve(points);
   CurveTracker tracker(curve);
   Vector3d off = Vector3d::Zero();
   int far_moves = 0;
   for (int i = 0; i < 30000; ++i) {
-    if (i % 5000 == 4999) {
-      points[static_cast<std::size_t>(i) % points.size()] += Vector3d(0.0, 1e-3, 0.0);
-      ASSERT_TRUE(curve.refit(points));
-    }
     off += 5e-5 * Vector3d(random.normal(), random.normal(), random.normal()) - 0.002 * off;
     const Vector3d tool = curve.at(curve.length() * i / 30000.0).position + off;
     CurveTracker forgetful(curve);
@@ -198,30 +194,6 @@ TEST(CurveTrackerTest, TheSourcesMethodGoesTheSameWay) {
     // The penalty holds the place back: on a straight stretch by weight / length of the distance.
     const double drag = 3.0 * kWeight / source.length() * place.distance + 1e-6;
     ASSERT_NEAR(place.arc, tracker.place().arc, drag) << arc;
-  }
-}
-
-TEST(CurveTrackerTest, ACurveThatBendsTakesItsPlaceAlong) {
-  Points points;
-  for (int i = 0; i <= 1000; ++i) {
-    points.push_back({1e-4 * i, 0.0, 0.0});
-  }
-  SampledCurve curve(points);
-  CurveTracker tracker(curve);
-  tracker.start({0.05, 0.0, 0.0});
-  // Wrapped about a cylinder more and more; the tool rides on the middle.
-  for (double bend = 0.0; bend < 40.0; bend += 0.05) {
-    for (int i = 0; i <= 1000; ++i) {
-      const double s = 1e-4 * i - 0.05;
-      points[static_cast<std::size_t>(i)] =
-          bend > 0.0
-              ? Vector3d(0.05 + std::sin(bend * s) / bend, 0.0, (1.0 - std::cos(bend * s)) / bend)
-              : Vector3d(0.05 + s, 0.0, 0.0);
-    }
-    ASSERT_TRUE(curve.refit(points));
-    tracker.follow({0.05, 0.0, -0.001});
-    ASSERT_NEAR(tracker.place().arc, 0.5 * curve.length(), 1e-9);
-    ASSERT_NEAR(tracker.place().distance, 0.001, 1e-9);
   }
 }
 

@@ -236,30 +236,6 @@ TEST(SampledCurveTest, TheSourcesMethodAgreesWhereItSeesEnoughNeighbours) {
   }
 }
 
-TEST(SampledCurveTest, RefitIsANewCurve) {
-  RandomStream random(6, "refit");
-  SampledCurve curve(make_curve("smooth", 500, 1.0, Vector3d::Zero(), random));
-  const Points bent = make_curve("walk", 500, 2.0, Vector3d(1.0, 2.0, 3.0), random);
-  bool done = false;
-  {
-    const test::AllocationGuard guard;
-    done = curve.refit(bent);
-    EXPECT_EQ(guard.count(), 0u);
-  }
-  ASSERT_TRUE(done);
-  const SampledCurve fresh(bent);
-  for (int i = 0; i < 300; ++i) {
-    const Vector3d tool = make_tool(bent, 2.0, random);
-    ASSERT_EQ(curve.nearest(tool).distance, fresh.nearest(tool).distance);
-    ASSERT_EQ(curve.nearest(tool).arc, fresh.nearest(tool).arc);
-  }
-  EXPECT_FALSE(curve.refit(Points(499, Vector3d::Zero()))) << "another number of points";
-  Points bad = bent;
-  bad[250].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(curve.refit(bad));
-  EXPECT_EQ(curve.nearest(bent[7]).distance, 0.0) << "as it was";
-}
-
 TEST(SampledCurveTest, TheTangentIsPerpendicularToTheLineToTheTool) {
   RandomStream random(7, "tangent");
   int corners = 0;

@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/device/coupled_mass.h"
 #include "core/device/force_dimension.h"
+#include "core/device/handle_physics.h"
 #include "core/device/hapi_board.h"
 #include "core/device/haply.h"
 #include "core/device/mouse.h"

@@ -12,7 +12,6 @@
 #include <string>
 #include <vector>
 
-#include "core/device/energy_watch.h"
 #include "core/device/virtual_device.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"

@@ -1,6 +1,6 @@
 // Records of an input device in pieces, with gaps.
 
-#include "core/device/input_reports.h"
+#include "core/device/input_file.h"
 
 #include <gtest/gtest.h>
 

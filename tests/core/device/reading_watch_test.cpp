@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/base/random.h"
-#include "core/device/coupled_mass.h"
+#include "core/device/handle_physics.h"
 #include "core/device/virtual_device.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/shared_data.h"

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/base/definition/schema.h"
-#include "core/device/coupled_mass.h"
+#include "core/device/handle_physics.h"
 #include "core/device/mouse.h"
 #include "core/device/replay.h"
 

@@ -10,12 +10,8 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/random.h"
-#include "core/questions/choice_kind.h"
-#include "core/questions/number_kind.h"
 #include "core/questions/question_kind.h"
 #include "core/questions/question_kinds.h"
-#include "core/questions/scale_kind.h"
-#include "core/questions/words_kind.h"
 #include "tests/support/allocation_guard.h"
 
 namespace haptrial::questions {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/bone/record/drilling_types.h"
+#include "core/bone/record/drilling_tables.h"
 #include "core/record/rows/session_types.h"
 #include "core/record/table/table_description.h"
 #include "tests/support/temporary_folder.h"

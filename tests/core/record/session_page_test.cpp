@@ -1,5 +1,6 @@
 // The tables of docs/session-file.md are those of the descriptions.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,27 +9,16 @@
 #include "core/base/file_text.h"
 #include "core/bone/hint/hint_rows.h"
 #include "core/bone/nerve/nerve_rows.h"
-#include "core/bone/record/burr_rows.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/field_row.h"
-#include "core/bone/record/fragment_rows.h"
-#include "core/bone/record/led_row.h"
-#include "core/bone/record/second_hand_row.h"
-#include "core/bone/record/tear_row.h"
-#include "core/bone/region/crossing_row.h"
+#include "core/bone/record/tool_rows.h"
+#include "core/bone/region/forbidden_region.h"
 #include "core/channel/channel_row.h"
-#include "core/record/rows/arm_row.h"
 #include "core/record/rows/common_tables.h"
-#include "core/record/rows/contact_row.h"
-#include "core/record/rows/cursor_row.h"
-#include "core/record/rows/late_window_row.h"
-#include "core/record/rows/moving_body_row.h"
-#include "core/record/rows/object_file_row.h"
+#include "core/record/rows/device_rows.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/session_tables.h"
-#include "core/record/rows/target_row.h"
-#include "core/record/rows/touched_body_row.h"
 #include "core/record/rows/trial_rows.h"
-#include "core/record/table/table_page.h"
 #include "core/subject/drilling/work_row.h"
 
 namespace haptrial::record::session_page_test {
@@ -36,6 +26,46 @@ namespace {
 
 const std::string kPage = HAPTRIAL_SOURCE_DIR "/docs/session-file.md";
 const std::string kEnd = "<!-- end of the tables -->\n";
+
+std::string type_of(const Column& column) {
+  switch (column.type) {
+    case ColumnType::kU8:
+      return "u8";
+    case ColumnType::kI32:
+      return "i32";
+    case ColumnType::kI64:
+      return "i64";
+    case ColumnType::kU64:
+      return "u64";
+    case ColumnType::kF32:
+      return "f32";
+    case ColumnType::kF64:
+      return "f64";
+    case ColumnType::kText:
+      break;
+  }
+  return fmt::format("text {}", column.bytes);
+}
+
+/// The tables with one row a column.
+std::string page_of(const TableList& tables) {
+  std::string page =
+      "| Dataset | Column | Type | Unit | Meaning |\n| --- | --- | --- | --- | --- |\n";
+  for (const TableDescription* table : tables) {
+    bool first = true;
+    for (const Field& field : table->fields()) {
+      const std::string since = field.since > table->since()
+                                    ? fmt::format(" (since schema version {})", field.since)
+                                    : "";
+      page +=
+          fmt::format("| {} | `{}` | {} | {} | {}{} |\n", first ? "`/" + table->name() + "`" : "",
+                      field.column.name, type_of(field.column), field.column.unit,
+                      field.column.description, since);
+      first = false;
+    }
+  }
+  return page;
+}
 
 /// The text between the marks. @param from  receives where it begins
 std::string block(const std::string& page, const std::string& name, std::size_t& from) {

@@ -1,7 +1,7 @@
 // Vibrations of actuators: their samples by the calibration, what is refused, and the channels of a
 // card, from a file that ALSA writes beside a card that swallows everything.
 
-#include "core/sound/actuator.h"
+#include "core/sound/cue.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "core/record/rows/device_row.h"
-#include "core/record/rows/response.h"
+#include "core/record/rows/answer_rows.h"
+#include "core/record/rows/device_rows.h"
 #include "tests/support/stand_in_lsl.h"
 
 namespace haptrial::stream {

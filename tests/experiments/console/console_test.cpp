@@ -14,10 +14,8 @@
 
 #include "core/base/error.h"
 #include "experiments/console/console_messages.h"
-#include "experiments/console/console_page.h"
 #include "experiments/server/address.h"
 #include "experiments/server/listener.h"
-#include "experiments/server/page.h"
 #include "experiments/server/request_filter.h"
 #include "tests/experiments/console_client.h"
 

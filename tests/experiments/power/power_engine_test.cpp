@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "analysis/power/power_report.h"
-#include "analysis/statistics/tests/repeated_power.h"
+#include "analysis/statistics/tests/power.h"
 #include "analysis/statistics/tests/t_tests.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/child_process.h"

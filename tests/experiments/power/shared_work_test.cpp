@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "core/base/child_process.h"
-#include "experiments/study/launch_rank.h"
 #include "experiments/study/unit_locks.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

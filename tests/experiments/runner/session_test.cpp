@@ -15,6 +15,7 @@
 #include "core/stimulus/stimulus.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -28,12 +29,8 @@ using record::Stage;
 record::SessionReader record_session(const protocols::ForceDefinition& definition,
                                      const std::filesystem::path& file, int trials,
                                      std::uint64_t seed = 1) {
-  SessionRequest request;
-  request.protocol = &protocols::force_training();
-  request.definition = &definition;
-  request.subject = "S01";
-  request.seed = seed;
-  request.file = file;
+  SessionRequest request =
+      test::session_request(protocols::force_training(), definition, file, seed);
   request.max_trials = trials;
   run_session(request);
   return record::SessionReader(file);
@@ -236,11 +233,8 @@ TEST_P(WithoutNoiseTest, RecallIsNearPerfectInEveryCondition) {
 
 TEST_F(SessionTest, InterruptedDryRunLeavesNothing) {
   std::atomic<bool> cancel{true};
-  SessionRequest request;
-  request.protocol = &protocols::force_training();
-  request.definition = &definition_;
-  request.subject = "S01";
-  request.file = folder_ / "S01.h5";
+  SessionRequest request =
+      test::session_request(protocols::force_training(), definition_, folder_ / "S01.h5", 0);
   request.cancel = &cancel;
   EXPECT_THROW(run_session(request), RunError);
   EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
@@ -256,12 +250,9 @@ TEST_F(SessionTest, NeverOverwrites) {
 TEST_F(SessionTest, RealClockKeepsTheSameRecordShape) {
   const protocols::ForceDefinition brief =
       protocols::parse_force_definition(test::shipped_with("speed", "speed = 0.05"), "brief.toml");
-  SessionRequest request;
-  request.protocol = &protocols::force_training();
-  request.definition = &brief;
-  request.subject = "S01";
+  SessionRequest request =
+      test::session_request(protocols::force_training(), brief, folder_ / "S01.h5", 0);
   request.clock = realtime::ClockKind::kReal;
-  request.file = folder_ / "S01.h5";
   request.max_trials = 1;
   const SessionSummary summary = run_session(request);
   const record::SessionReader reader(request.file);

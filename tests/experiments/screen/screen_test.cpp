@@ -10,10 +10,9 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/render/flat/frames.h"
+#include "core/render/flat/trial_display.h"
 #include "core/render/gl/image.h"
 #include "core/stimulus/stimulus.h"
-#include "experiments/screen/screen_mirror.h"
 #include "protocols/force_training/path_drawing.h"
 #include "tests/core/render/flat/pixels.h"
 #include "tests/experiments/frame_periods.h"

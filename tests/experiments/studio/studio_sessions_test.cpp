@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/base/file_text.h"
-#include "experiments/studio/session_words.h"
+#include "experiments/studio/session_files.h"
 #include "tests/experiments/console_person.h"
 #include "tests/experiments/studio/studio_fixture.h"
 #include "tests/support/wait.h"

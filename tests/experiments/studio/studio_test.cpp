@@ -13,7 +13,6 @@
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
-#include "experiments/studio/studio_page.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/studio/studio_fixture.h"
 #include "tests/support/temporary_folder.h"

@@ -10,9 +10,9 @@
 #include "core/bone/record/recorded_bone.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
-#include "protocols/bone_drilling/bone_in_session.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/load_bones.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -26,12 +26,7 @@ using testing::HasSubstr;
 constexpr double kSeconds = 4.0;
 
 void run(const BoneDefinition& definition, const fs::path& file) {
-  experiments::SessionRequest request;
-  request.protocol = &bone_drilling();
-  request.definition = &definition;
-  request.subject = "S01";
-  request.seed = 3;
-  request.file = file;
+  experiments::SessionRequest request = test::session_request(bone_drilling(), definition, file, 3);
   experiments::run_session(request);
 }
 

@@ -9,8 +9,8 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
-#include "core/bone/record/field_row.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
@@ -20,6 +20,7 @@
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/load_bones.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
@@ -55,12 +56,8 @@ class BoneRestoreTest : public testing::Test {
     shared_.reset();
   }
   static SessionSummary run(const fs::path& file, bool resume) {
-    SessionRequest request;
-    request.protocol = &protocols::bone_drilling();
-    request.definition = definition_.get();
-    request.subject = "S01";
-    request.seed = 3;
-    request.file = file;
+    SessionRequest request =
+        test::session_request(protocols::bone_drilling(), *definition_, file, 3);
     request.resume = resume;
     return run_session(request);
   }

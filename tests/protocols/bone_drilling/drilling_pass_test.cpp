@@ -11,7 +11,6 @@
 #include <tuple>
 
 #include "core/base/random.h"
-#include "core/record/table/rounding.h"
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/replay_difference.h"
 #include "protocols/interface/session_task.h"

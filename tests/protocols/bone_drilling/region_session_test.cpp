@@ -3,12 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/bone/region/crossing_row.h"
+#include "core/bone/region/forbidden_region.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/runner/session.h"
 #include "protocols/bone_drilling/bone_protocol.h"
 #include "protocols/bone_drilling/bone_replay.h"
 #include "protocols/bone_drilling/load_bones.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/message_of.h"
@@ -38,12 +39,8 @@ struct Recording {
 
 Recording record_session(const fs::path& folder, const std::string& more) {
   const BoneDefinition d = load_bone_definition(with_regions(folder, more));
-  experiments::SessionRequest request;
-  request.protocol = &bone_drilling();
-  request.definition = &d;
-  request.subject = "S01";
-  request.seed = 3;
-  request.file = folder / "S01.h5";
+  experiments::SessionRequest request =
+      test::session_request(bone_drilling(), d, folder / "S01.h5", 3);
   experiments::run_session(request);
   EXPECT_EQ(BoneReplay(request.file).run(1).difference, "");
   const record::SessionReader reader(request.file);

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "protocols/force_training/free_recall.h"
 #include "protocols/force_training/recorded_pass.h"
 #include "protocols/force_training/training_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 

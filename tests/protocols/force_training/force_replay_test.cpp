@@ -14,6 +14,7 @@
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_protocol.h"
 #include "tests/experiments/command.h"
+#include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"
 
@@ -54,13 +55,9 @@ class ReplayTest : public testing::Test {
     folder_ = new test::TemporaryFolder;
     const protocols::ForceDefinition definition = protocols::parse_force_definition(
         test::shipped_with("speed", "speed = 0.05"), "brief.toml");
-    SessionRequest request;
-    request.protocol = &protocols::force_training();
-    request.definition = &definition;
-    request.subject = "S01";
+    SessionRequest request =
+        test::session_request(protocols::force_training(), definition, session(), 4);
     request.participant = 1;
-    request.seed = 4;
-    request.file = session();
     request.frames_per_pass = kFramesPerPass;
     request.frames_folder = *folder_ / "live";
     fs::create_directory(request.frames_folder);

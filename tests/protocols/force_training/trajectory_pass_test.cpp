@@ -9,8 +9,8 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
-#include "protocols/force_training/recall.h"
 #include "protocols/force_training/training_pass.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 
@@ -32,7 +32,7 @@ const stimulus::Stimulus& stimulus_of_study() {
 std::unique_ptr<TrajectoryPass> make_pass(const std::string& kind,
                                           const GuidanceParameters& parameters = {}) {
   if (kind == "recall") {
-    return std::make_unique<RecallTest>(stimulus_of_study(), parameters, 7);
+    return std::make_unique<TrajectoryPass>(kRecallTest, stimulus_of_study(), parameters, 7);
   }
   return make_training_pass(kind, stimulus_of_study(), parameters, 7);
 }

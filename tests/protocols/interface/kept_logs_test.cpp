@@ -1,10 +1,10 @@
-#include "protocols/interface/kept_logs.h"
+#include "protocols/interface/session_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "core/record/rows/contact_row.h"
-#include "core/record/rows/cursor_row.h"
+#include "core/record/rows/device_rows.h"
+#include "core/record/rows/object_rows.h"
 
 namespace haptrial::protocols {
 namespace {

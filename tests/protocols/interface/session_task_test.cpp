@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "core/stimulus/presentation.h"
-#include "protocols/force_training/recall.h"
+#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/scripted_channel.h"
 #include "tests/support/scripted_device.h"
@@ -617,7 +617,7 @@ TEST_F(SessionTaskTest, GainsThatASecondDeviceLosesAreKnown) {
 
 TEST_F(SessionTaskTest, ATickDoesNotAllocate) {
   const stimulus::Stimulus stimulus = stimulus::make_stimulus({}, {}, 1);
-  RecallTest pass(stimulus, {}, 1);
+  TrajectoryPass pass(kRecallTest, stimulus, {}, 1);
   device_.position = stimulus.path.points().front();
   device_.on_read = [](std::size_t tick, DeviceReading&) { return tick != 3000; };
   const test::AllocationGuard guard;

@@ -1,5 +1,5 @@
 #include "protocols/interface/study_rules.h"
-#include "protocols/definition/handle_loop.h"
+#include "protocols/definition/definition.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -12,9 +12,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/psychometric/procedure/procedure.h"
-#include "core/record/rows/contact_row.h"
-#include "core/record/rows/moving_body_row.h"
-#include "core/record/rows/touched_body_row.h"
+#include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/interface/session_task.h"

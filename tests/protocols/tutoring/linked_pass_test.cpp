@@ -1,6 +1,6 @@
 // Two passes coupled by a wire in one thread: when they begin and end, and what each hand feels.
 
-#include "protocols/tutoring/linked_pass.h"
+#include "protocols/tutoring/linked_trials.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "protocols/tutoring/tutored_pass.h"
+#include "protocols/tutoring/tutored_trials.h"
 #include "tests/support/message_of.h"
 
 namespace haptrial::protocols {

@@ -10,10 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "analysis/force_training/study/path_statistics.h"
 #include "analysis/force_training/study/study_statistics.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/tutoring_row.h"
+#include "core/record/rows/partner_rows.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/condition_null.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "core/device/coupled_mass.h"
+#include "core/device/handle_physics.h"
 
 namespace haptrial::test {
 

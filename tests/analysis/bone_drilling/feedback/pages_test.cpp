@@ -11,7 +11,7 @@
 #include "analysis/bone_drilling/feedback/range_plot.h"
 #include "analysis/bone_drilling/feedback/scene_mesh.h"
 #include "analysis/bone_drilling/feedback/trainee_page.h"
-#include "analysis/document/base64.h"
+#include "analysis/document/html.h"
 #include "tests/analysis/bone_drilling/hand_made.h"
 
 namespace haptrial::analysis::drilling::pages_test {
@@ -158,7 +158,7 @@ TEST(FeedbackPageTest, TheSceneHasTheRemovedVoxelsWhereTheyWereInTheWorld) {
   ASSERT_EQ(places.size(), 3 * p.removals.size());
   for (std::size_t n = 0; n < p.removals.size(); ++n) {
     const bone::Voxel& v = p.removals[n].voxel;
-    const Eigen::Vector3d wanted = 1e3 * (p.pose_WB * p.bone->grid.centre(v.x(), v.y(), v.z()));
+    const Eigen::Vector3d wanted = 1e3 * (p.pose_WB * p.bone->grid.centre(v));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const double place =
           scene["low"][axis].get<double>() + scene["step"].get<double>() * places[3 * n + axis];

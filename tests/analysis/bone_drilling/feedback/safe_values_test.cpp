@@ -100,7 +100,7 @@ Procedure random_drilling(std::uint64_t seed, const std::string& participant) {
   std::vector<bool> gone(8000, false);
   for (int n = 0; n < 1500; ++n) {
     const bone::Voxel v = test::any_voxel(random, p.bone->grid);
-    const std::size_t at = p.bone->grid.index(v.x(), v.y(), v.z());
+    const std::size_t at = p.bone->grid.index(v);
     if (!gone[at]) {
       gone[at] = true;
       test::remove_in_turn(p, {v}, random.uniform(0.1, 2.0), random.uniform(0.001, 0.05));

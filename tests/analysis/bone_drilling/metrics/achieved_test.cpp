@@ -63,7 +63,7 @@ TEST(AchievedTest, CountsAreThoseOfTheRecordedRemovals) {
   std::vector<bone::Voxel> voxels;
   for (int n = 0; n < 1500; ++n) {  // some of them more than once
     const bone::Voxel v = test::any_voxel(random, model.grid);
-    if (model.labels[model.grid.index(v.x(), v.y(), v.z())] != 0) {
+    if (model.labels[model.grid.index(v)] != 0) {
       voxels.push_back(v);
     }
   }
@@ -78,7 +78,7 @@ TEST(AchievedTest, CountsAreThoseOfTheRecordedRemovals) {
     for (int i = 0; i < 20; ++i) {
       least = std::min(least, 1e-3 * (v - bone::Voxel(i, 10, 3)).cast<double>().norm());
     }
-    const std::size_t at = model.grid.index(v.x(), v.y(), v.z());
+    const std::size_t at = model.grid.index(v);
     if (!seen.insert(at).second) {
       continue;
     }

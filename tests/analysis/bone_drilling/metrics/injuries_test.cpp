@@ -80,7 +80,7 @@ TEST(InjuriesTest, ContactAgreesWithAllVoxels) {
                                   random.uniform(-4e-3, 12e-3));
       p.ticks.push_back(test::drilling_tick(tick, p.pose_WB * tip_B));
       // The sphere meets the cube where the cube's nearest point lies within it.
-      const Eigen::Vector3d middle = model.grid.centre(nerve.x(), nerve.y(), nerve.z());
+      const Eigen::Vector3d middle = model.grid.centre(nerve);
       const Eigen::Vector3d nearest = tip_B.cwiseMax(middle - Eigen::Vector3d::Constant(0.5e-3))
                                           .cwiseMin(middle + Eigen::Vector3d::Constant(0.5e-3));
       if (!expected && (tip_B - nearest).norm() <= p.tools[0].burr_radius) {
@@ -111,7 +111,7 @@ TEST(InjuriesTest, AFissureBurrTouchesByItsShape) {
     p.tools[0] = {"fissure", 0.75e-3, shape};
     p.pose_WB = Eigen::Translation3d(0.01, 0.02, 0.03) *
                 Eigen::AngleAxisd(random.uniform(0.0, 3.0), Eigen::Vector3d::UnitZ());
-    const Eigen::Vector3d middle = model.grid.centre(nerve.x(), nerve.y(), nerve.z());
+    const Eigen::Vector3d middle = model.grid.centre(nerve);
     const Eigen::Vector3d tip_B =
         middle + Eigen::Vector3d(random.uniform(-4e-3, 4e-3), random.uniform(-4e-3, 4e-3),
                                  random.uniform(-4e-3, 4e-3));

@@ -52,16 +52,6 @@ TEST(RegionLikelihoodTest, TwoVoxelsByHandWithOneLeftOut) {
   EXPECT_NEAR(*pairs[0], 0.5 * std::log((2.0 / 3.0) / (1.0 / 3.0)), 1e-12);
 }
 
-TEST(RegionLikelihoodTest, SmoothingPullsTowardsNothing) {
-  const TwoVoxels t;
-  const auto weak = region_log_ratios(t.regions, kResubstitution, RegionTerms::kAll, {0.01});
-  const auto strong = region_log_ratios(t.regions, kResubstitution, RegionTerms::kAll, {1e6});
-  EXPECT_GT(*weak[0], *region_log_ratios(t.regions, kResubstitution)[0]);
-  EXPECT_NEAR(*strong[0], 0.0, 1e-5);
-  EXPECT_THROW(region_log_ratios(t.regions, kResubstitution, RegionTerms::kAll, {0.0}),
-               std::invalid_argument);
-}
-
 /// Procedures of people who remove each of `voxels` with a probability of their own.
 struct Study {
   std::vector<Voxels> voxels;

@@ -108,7 +108,7 @@ TEST(VisibilityTest, ASurfaceVoxelOfAConvexBoneIsSeenFromOutside) {
     for (const int side : {-7, 7}) {
       bone::Voxel v(7, 7, 7);
       v[axis] += side;
-      const Eigen::Vector3d p = ball.grid.centre(v.x(), v.y(), v.z());
+      const Eigen::Vector3d p = ball.grid.centre(v);
       EXPECT_TRUE(is_visible(standing, v, middle + 20.0 * (p - middle), {}));
       EXPECT_FALSE(is_visible(standing, v, middle - 20.0 * (p - middle), {}));
       ++pole;
@@ -121,7 +121,7 @@ TEST(VisibilityTest, ASurfaceVoxelOfAConvexBoneIsSeenFromOutside) {
 bool seen_by_sampling(const StandingBone& bone, const bone::Voxel& voxel,
                       const Eigen::Vector3d& eye, const BurrOnTick& burr, bool& unsure) {
   const geometry::VoxelGrid& grid = bone.grid();
-  const Eigen::Vector3d from = grid.centre(voxel.x(), voxel.y(), voxel.z());
+  const Eigen::Vector3d from = grid.centre(voxel);
   bool visible = true;
   for (int n = 0; n <= 20000; ++n) {
     const Eigen::Vector3d p = from + (eye - from) * (n / 20000.0);
@@ -157,7 +157,7 @@ TEST(VisibilityTest, AgreesWithPointsAlongTheLine) {
     const bone::Voxel v = test::any_voxel(random, model.grid);
     const Eigen::Vector3d eye(random.uniform(-0.02, 0.03), random.uniform(-0.02, 0.03),
                               random.uniform(-0.02, 0.03));
-    const BurrOnTick burr{model.grid.centre(v.x(), v.y(), v.z()), random.uniform(0.0, 2e-3)};
+    const BurrOnTick burr{model.grid.centre(v), random.uniform(0.0, 2e-3)};
     bool unsure = false;
     const bool expected = seen_by_sampling(standing, v, eye, burr, unsure);
     if (!unsure) {

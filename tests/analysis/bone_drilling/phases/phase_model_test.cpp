@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/bone_drilling/phases/phase_accuracy.h"
+#include "analysis/bone_drilling/phases/phase_labels.h"
 #include "tests/analysis/bone_drilling/phases/made_actions.h"
 #include "tests/support/message_of.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/contact/felt_body.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "analysis/contact/truth/rubbed_surface.h"
+#include "analysis/contact/truth/rubbed_profile.h"
 #include "analysis/contact/truth/true_contact.h"
 #include "tests/support/truth_cases.h"
 

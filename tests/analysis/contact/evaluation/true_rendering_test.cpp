@@ -10,7 +10,7 @@
 #include "analysis/contact/exam/exam_bodies.h"
 #include "analysis/contact/truth/rubbed_profile.h"
 #include "analysis/contact/truth/true_contact.h"
-#include "core/contact/make_renderer.h"
+#include "core/contact/renderer_kinds.h"
 #include "tests/support/truth_cases.h"
 
 namespace haptrial::evaluation::true_rendering_test {

@@ -10,7 +10,7 @@
 #include "analysis/document/html.h"
 #include "analysis/force_training/report/study_figures.h"
 #include "analysis/force_training/report/study_json.h"
-#include "analysis/force_training/study/study_summary.h"
+#include "analysis/force_training/study/study_result.h"
 #include "analysis/statistics/design/wording.h"
 #include "tests/analysis/force_training/example_study.h"
 

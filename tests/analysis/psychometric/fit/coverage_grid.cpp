@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "analysis/psychometric/fit/adaptive_posterior.h"
-#include "analysis/psychometric/fit/answer_draws.h"
+#include "analysis/psychometric/fit/bootstrap_fit.h"
 #include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/psychometric/fit/track_interval.h"
 #include "core/base/parallel.h"

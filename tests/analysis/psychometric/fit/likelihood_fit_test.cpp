@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/psychometric/fit/bootstrap_fit.h"
-#include "analysis/statistics/base/minimum.h"
+#include "analysis/statistics/base/solvers.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 
@@ -254,15 +254,6 @@ TEST(BootstrapFit, FindsThatAFunctionDoesNotDescribeTheAnswers) {
   FitBootstrap how;
   how.resampling.count = 999;
   EXPECT_LE(bootstrap_fit(uneven, options, {}, how).deviance_p, 0.001);
-  const auto influence = block_influence(uneven, options);
-  ASSERT_EQ(influence.size(), 5u);
-  for (std::size_t i = 0; i < 5; ++i) {
-    ASSERT_TRUE(influence[i]);
-    EXPECT_GE(influence[i]->deviance, 0.0);
-  }
-  // Without the low share at 3 the threshold moves down, without the high one at 2 up.
-  EXPECT_LT(influence[2]->threshold, 0.0);
-  EXPECT_GT(influence[1]->threshold, 0.0);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/statistics/base/minimum.h"
+#include "analysis/statistics/base/solvers.h"
 #include "core/base/random.h"
 #include "tests/support/allocation_guard.h"
 

@@ -1,5 +1,3 @@
-#include "analysis/psychometric/models/detection.h"
-
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_integration.h>
 #include <gsl/gsl_randist.h>
@@ -8,9 +6,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "analysis/psychometric/models/detection.h"
 #include "analysis/psychometric/models/magnitude.h"
 #include "analysis/psychometric/models/rating.h"
-#include "analysis/statistics/base/minimum.h"
+#include "analysis/statistics/base/solvers.h"
 #include "core/base/random.h"
 
 namespace haptrial::analysis {
@@ -35,30 +34,26 @@ TEST(Detection, GivesTheAnswersOfR) {
   struct Case {
     DetectionCounts counts;
     RateCorrection correction;
-    double d_prime, criterion, log_beta, forced_choice;
+    double d_prime, criterion, log_beta;
   };
-  const Case cases[] = {
-      {{40, 10, 10, 40}, RateCorrection::kNone, 1.6832424671458286, 0.0, 0.0, 1.1902321628999897},
-      {{12, 38, 31, 19},
-       RateCorrection::kNone,
-       -1.0117833509394849,
-       0.20041088737034507,
-       -0.20277239918832343,
-       -0.71543886854095817},
-      {{49, 1, 1, 49}, RateCorrection::kNone, 4.1074978212636442, 0.0, 0.0, 2.9044395631244919},
-      {{20, 0, 0, 25},
-       RateCorrection::kLogLinear,
-       4.0506542275423296,
-       0.044574717123886387,
-       0.1805567663593739,
-       2.8642450725371376}};
+  const Case cases[] = {{{40, 10, 10, 40}, RateCorrection::kNone, 1.6832424671458286, 0.0, 0.0},
+                        {{12, 38, 31, 19},
+                         RateCorrection::kNone,
+                         -1.0117833509394849,
+                         0.20041088737034507,
+                         -0.20277239918832343},
+                        {{49, 1, 1, 49}, RateCorrection::kNone, 4.1074978212636442, 0.0, 0.0},
+                        {{20, 0, 0, 25},
+                         RateCorrection::kLogLinear,
+                         4.0506542275423296,
+                         0.044574717123886387,
+                         0.1805567663593739}};
   for (const Case& c : cases) {
     const auto d = detection(c.counts, c.correction);
     ASSERT_TRUE(d);
     EXPECT_NEAR(d->d_prime, c.d_prime, 1e-13);
     EXPECT_NEAR(d->criterion, c.criterion, 1e-13);
     EXPECT_NEAR(d->log_beta, c.log_beta, 1e-13);
-    EXPECT_NEAR(forced_choice_detection(c.counts, c.correction)->d_prime, c.forced_choice, 1e-13);
   }
 }
 
@@ -93,8 +88,6 @@ TEST(Detection, HasAnIntervalThatHoldsTheTruth) {
 }
 
 TEST(Detection, OfAForcedChoice) {
-  const auto d = forced_choice_detection({80, 20, 30, 70}, RateCorrection::kNone);
-  EXPECT_NEAR(d->d_prime, (z(0.8) - z(0.3)) / std::sqrt(2.0), 1e-13);
   for (const double share : {0.3, 0.5, 0.75, 0.99}) {
     EXPECT_NEAR(*forced_choice_d_prime(share, 2), std::sqrt(2.0) * z(share), 1e-10);
   }
@@ -291,6 +284,67 @@ TEST(PowerLaw, SaysHowWellEachExponentIsKnown) {
   EXPECT_NEAR(line.deviation, std::sqrt(1.0 / 6.0), 1e-12);
   EXPECT_NEAR(line.high - law->exponents[0],
               gsl_cdf_tdist_Pinv(0.975, 1.0) * std::sqrt(1.0 / 12.0) / octave, 1e-9);
+}
+
+struct JudgedTask {
+  DiscriminationTask task;
+  double share, d_prime;
+};
+
+/// dprime.oddity(), dprime.ABX(method = "diff") and dprime.SD(method = "IO") of R's psyphy 0.2-3.
+constexpr JudgedTask kJudgedTasks[] = {
+    {DiscriminationTask::kOddity, 0.36, 0.545390},
+    {DiscriminationTask::kOddity, 0.60, 1.975585},
+    {DiscriminationTask::kOddity, 0.80, 3.128594},
+    {DiscriminationTask::kOddity, 0.95, 4.800714},
+    {DiscriminationTask::kAbx, 0.52, 0.472318},
+    {DiscriminationTask::kAbx, 0.75, 2.020038},
+    {DiscriminationTask::kAbx, 0.97, 4.625318},
+    {DiscriminationTask::kSameDifferent, 0.52, 0.506694},
+    {DiscriminationTask::kSameDifferent, 0.75, 2.103592},
+    {DiscriminationTask::kSameDifferent, 0.97, 4.328008},
+    {DiscriminationTask::kOneInterval, 0.75, 1.348980},  // 2 qnorm(0.75) of R
+    {DiscriminationTask::kOneInterval, 0.40, -0.506694},
+};
+
+TEST(DiscriminationTaskTest, AgreesWithPsyphy) {
+  for (const JudgedTask& each : kJudgedTasks) {
+    EXPECT_NEAR(*task_d_prime(each.task, each.share, 3), each.d_prime, 1e-4) << each.share;
+  }
+}
+
+/// Observers who compare noisy stimuli are as often right as is computed.
+TEST(DiscriminationTaskTest, SimulatedObserversAreAsOftenRight) {
+  constexpr int kTrials = 100'000;
+  constexpr double kD = 1.5;
+  RandomStream random(1, "observers");
+  int odd = 0, abx = 0, same = 0, one = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    const double a = random.normal(), b = random.normal(), x = kD + random.normal();
+    odd += std::abs(a - b) < std::min(std::abs(a - x), std::abs(b - x)) ? 1 : 0;
+    const double other = kD + random.normal(), as_other = kD + random.normal();
+    abx += std::abs(as_other - other) < std::abs(as_other - a) ? 1 : 0;
+    const auto is_high = [](double value) { return value > kD / 2.0; };
+    same += is_high(a) == is_high(b) ? 1 : 0;
+    one += is_high(x) ? 1 : 0;
+  }
+  const auto expect = [&](int right, DiscriminationTask task) {
+    EXPECT_NEAR(static_cast<double>(right) / kTrials, task_share(task, kD, 3), 0.005);
+  };
+  expect(odd, DiscriminationTask::kOddity);
+  expect(abx, DiscriminationTask::kAbx);
+  expect(same, DiscriminationTask::kSameDifferent);
+  expect(one, DiscriminationTask::kOneInterval);
+}
+
+TEST(DiscriminationTaskTest, ChanceIsNoSensitivity) {
+  for (const auto& [task, chance] : {std::pair(DiscriminationTask::kOddity, 1.0 / 3.0),
+                                     {DiscriminationTask::kAbx, 0.5},
+                                     {DiscriminationTask::kSameDifferent, 0.5}}) {
+    EXPECT_NEAR(task_share(task, 0.0, 3), chance, 1e-12);
+    EXPECT_EQ(*task_d_prime(task, chance - 0.1, 3), 0.0);
+    EXPECT_FALSE(task_d_prime(task, 1.0, 3));
+  }
 }
 
 }  // namespace

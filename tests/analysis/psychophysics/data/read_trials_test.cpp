@@ -1,15 +1,21 @@
 // Records of sessions come back, trial by trial, and stand in the tidy table.
-#include "analysis/psychophysics/data/read_trials.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <string>
+#include <thread>
+#include <vector>
+
 #include "analysis/files/csv.h"
+#include "analysis/psychophysics/data/page_scores.h"
+#include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/data/trials_csv.h"
+#include "analysis/psychophysics/data/trials_data.h"
 #include "tests/analysis/psychophysics/simulated_trials.h"
 #include "tests/support/temporary_folder.h"
 
-namespace haptrial::analysis::trials {
+namespace haptrial::analysis::trials::read_trials_test {
 namespace {
 
 using testing::ElementsAre;
@@ -153,4 +159,62 @@ TEST(TrialsCsv, NoColumnStandsTwice) {
 }
 
 }  // namespace
-}  // namespace haptrial::analysis::trials
+
+// Words are texts, however many there are and whoever adds them.
+
+namespace {
+
+TEST(WordTest, IsItsText) {
+  EXPECT_TRUE(Word().empty());
+  EXPECT_EQ(Word(), Word(""));
+  const Word stiffer("stiffer");
+  EXPECT_EQ(stiffer.text(), "stiffer");
+  EXPECT_EQ(stiffer, Word(std::string("stiffer")));
+  EXPECT_FALSE(stiffer == Word("softer"));
+  EXPECT_TRUE(stiffer == "stiffer");
+  EXPECT_FALSE(stiffer == std::string("stiff"));
+  EXPECT_FALSE(stiffer.empty());
+}
+
+TEST(WordTest, ThreadsAddTheSameWordsAndReadThemMeanwhile) {
+  constexpr int kCount = 20'000;  // more than a block of them
+  std::vector<std::vector<Word>> found(4);
+  std::vector<std::thread> threads;
+  for (std::vector<Word>& own : found) {
+    threads.emplace_back([&own] {
+      for (int i = 0; i < kCount; ++i) {
+        own.emplace_back("word " + std::to_string(i));
+        EXPECT_EQ(own[static_cast<std::size_t>(i / 2)].text(), "word " + std::to_string(i / 2));
+      }
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  for (std::size_t i = 0; i < kCount; ++i) {
+    ASSERT_EQ(found[0][i].text(), "word " + std::to_string(i));
+    ASSERT_EQ(found[0][i], found[3][i]);
+  }
+}
+
+}  // namespace
+
+namespace {
+
+TEST(PageScoresTest, MeansAreOverParticipantsForEachTime) {
+  const std::vector<PageScore> scores{{"P01", "", "load", "session 1, before", "raw", 20.0},
+                                      {"P01", "", "load", "session 2, before", "raw", 50.0},
+                                      {"P02", "", "load", "session 1, before", "raw", 40.0},
+                                      {"P02", "", "load", "session 1, before", "raw", 60.0}};
+  const auto found = summaries_of(scores);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].count, 2u);
+  EXPECT_NEAR(found[0].mean, 35.0, 1e-12);  // 20 and the mean of 40 and 60
+  EXPECT_NEAR(found[0].deviation, 15.0 * std::sqrt(2.0), 1e-12);
+  EXPECT_EQ(found[1].count, 1u);
+  EXPECT_NEAR(found[1].mean, 50.0, 1e-12);
+  EXPECT_TRUE(std::isnan(found[1].deviation));
+}
+
+}  // namespace
+}  // namespace haptrial::analysis::trials::read_trials_test

@@ -1,6 +1,5 @@
 // Staircases make drift and repetition of their own, for people who have neither: what is expected
 // by chance takes it off, a study's test keeps its level and still finds what is there.
-#include "analysis/psychophysics/fit/serial_null.h"
 
 #include <gtest/gtest.h>
 

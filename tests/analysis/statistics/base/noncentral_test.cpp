@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/incomplete_beta.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -1,6 +1,6 @@
 // Changes of participants from one level to others, and what compares them between groups.
 
-#include "analysis/statistics/design/changes.h"
+#include "analysis/statistics/design/compared_sides.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

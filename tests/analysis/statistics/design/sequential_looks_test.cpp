@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/solvers.h"
 #include "analysis/statistics/design/design_tests.h"
 #include "analysis/statistics/design/wording.h"
-#include "analysis/statistics/tests/bayes_factor.h"
+#include "analysis/statistics/tests/t_tests.h"
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

@@ -1,6 +1,6 @@
 #include <set>
 
-#include "analysis/statistics/variance/welch_anova.h"
+#include "analysis/statistics/variance/anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 #include "tests/support/two_factors.h"
 

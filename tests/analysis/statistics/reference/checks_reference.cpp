@@ -1,6 +1,6 @@
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/tests/shapiro_wilk.h"
-#include "analysis/statistics/variance/levene.h"
+#include "analysis/statistics/variance/anova.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::checks_reference {

@@ -78,16 +78,10 @@ for (case in names(f_values)) for (level in c(0.9, 0.95)) {
   answer(paste(case, level), eta = value, low = limits[1] / (limits[1] + cases),
          high = limits[2] / (limits[2] + cases))
 }
-procedure("Omega squared (partial)", "effectsize F_to_omega2")
-for (case in names(f_values)) {
-  v <- f_values[[case]]
-  answer(case, omega = F_to_omega2(v[1], v[2], v[3])$Omega2_partial)
-}
-procedure("Eta and omega squared of one-way designs", "aov; effectsize eta_squared omega_squared")
+procedure("Eta squared of one-way designs", "aov; effectsize eta_squared")
 for (case in c("unequal", "ties")) {
   fit <- aov(value ~ group, data_set(case))
-  answer(case, eta = eta_squared(fit, partial = FALSE)$Eta2,
-         omega = omega_squared(fit, partial = FALSE)$Omega2)
+  answer(case, eta = eta_squared(fit, partial = FALSE)$Eta2)
 }
 procedure("Generalized eta squared", "aov with Error; effectsize eta_squared(generalized = TRUE)")
 fit <- aov(value ~ condition + Error(subject / condition), data_set("times"))

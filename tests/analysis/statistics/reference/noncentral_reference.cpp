@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "analysis/statistics/base/noncentral.h"
-#include "analysis/statistics/base/root.h"
+#include "analysis/statistics/base/solvers.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::noncentral_reference {

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "analysis/statistics/tests/power.h"
-#include "analysis/statistics/tests/repeated_power.h"
 #include "tests/analysis/statistics/reference/reference.h"
 
 namespace haptrial::analysis::reference::power_reference {

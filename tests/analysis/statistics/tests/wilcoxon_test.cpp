@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/statistics/base/ranks.h"
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/tests/permutation.h"
 #include "core/base/random.h"
 

@@ -9,7 +9,6 @@
 #include <stdexcept>
 
 #include "analysis/statistics/tests/t_tests.h"
-#include "analysis/statistics/variance/generalized_eta.h"
 #include "analysis/statistics/variance/repeated_anova.h"
 #include "core/base/random.h"
 #include "tests/analysis/statistics/normal_values.h"
@@ -90,7 +89,6 @@ TEST(ProportionOfVariance, OfTwoGroupsFollowsFromD) {
   const double scaled = d * d / (1.0 / 4.0 + 1.0 / 3.0);  // t²
   EXPECT_NEAR(eta_squared(*anova)->value, scaled / (scaled + 5.0), 1e-14);
   EXPECT_NEAR(eta_squared(*anova)->value, anova->eta_squared, 1e-14);
-  EXPECT_NEAR(omega_squared(*anova)->value, (scaled - 1.0) / (scaled + 6.0), 1e-14);
 }
 
 TEST(ProportionOfVariance, IntervalLeavesOutZeroExactlyWhenTheTestRejects) {
@@ -101,14 +99,8 @@ TEST(ProportionOfVariance, IntervalLeavesOutZeroExactlyWhenTheTestRejects) {
     const auto eta = eta_squared(*anova);
     EXPECT_EQ(eta->low > 0.0, anova->p < 0.05);
     EXPECT_LE(eta->low, eta->value);
-    EXPECT_GE(eta->high, omega_squared(*anova)->value);
     EXPECT_LT(eta->high, 1.0);
   }
-}
-
-TEST(ProportionOfVariance, OmegaIsNeverNegative) {
-  EXPECT_EQ(partial_omega_squared(0.3, 2.0, 20.0)->value, 0.0);
-  EXPECT_EQ(partial_omega_squared(0.3, 2.0, 20.0)->low, 0.0);
 }
 
 TEST(GeneralizedEta, CountsParticipantsToo) {
@@ -118,42 +110,6 @@ TEST(GeneralizedEta, CountsParticipantsToo) {
       *generalized_eta_squared(a->squares_condition, a->squares_participants + a->squares_error),
       54.0 / 84.0, 1e-14);
   EXPECT_NEAR(*generalized_eta_squared(10.0, 40.0, false), 0.25, 1e-16);
-}
-
-TEST(GeneralizedEta, HasAnIntervalOverParticipants) {
-  RandomStream random(6, "table");
-  Table table(14, Values(3));
-  for (auto& row : table) {
-    const double participant = random.normal();
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      row[c] = participant + 0.9 * static_cast<double>(c) + 0.5 * random.normal();
-    }
-  }
-  const auto a = repeated_measures_anova(table);
-  const auto interval = generalized_eta_squared_interval(table, {1, "ges", 1999, 1});
-  ASSERT_TRUE(interval) << interval.because();
-  EXPECT_NEAR(
-      interval->estimate,
-      *generalized_eta_squared(a->squares_condition, a->squares_participants + a->squares_error),
-      1e-13);
-  EXPECT_LT(interval->low, interval->estimate);
-  EXPECT_GT(interval->high, interval->estimate);
-  EXPECT_GT(interval->low, 0.1);
-  // An offset common to all leaves it where it is.
-  for (auto& row : table) {
-    for (auto& value : row) {
-      value = std::round(value * 64.0) / 64.0;
-    }
-  }
-  const auto near = generalized_eta_squared_interval(table, {1, "ges", 1999, 1});
-  for (auto& row : table) {
-    for (auto& value : row) {
-      value += 1e12;
-    }
-  }
-  const auto far = generalized_eta_squared_interval(table, {1, "ges", 1999, 1});
-  EXPECT_EQ(near->low, far->low);
-  EXPECT_EQ(near->high, far->high);
 }
 
 TEST(EffectSize, SaysWhyItIsNotDefined) {
@@ -166,10 +122,7 @@ TEST(EffectSize, SaysWhyItIsNotDefined) {
   EXPECT_THAT(hedges_g(Values{1, 2}, Values{4}).because(), HasSubstr("too few"));
   EXPECT_THAT(partial_eta_squared(kNan, 2, 9).because(), HasSubstr("no F"));
   EXPECT_THAT(partial_eta_squared(1e12, 2, 9).because(), HasSubstr("too large"));
-  EXPECT_THAT(partial_omega_squared(-1, 2, 9).because(), HasSubstr("no F"));
   EXPECT_THAT(generalized_eta_squared(0.0, 0.0).because(), HasSubstr("no squares"));
-  EXPECT_THAT(generalized_eta_squared_interval({{1, 2}}, {}).because(),
-              HasSubstr("two participants"));
 }
 
 }  // namespace

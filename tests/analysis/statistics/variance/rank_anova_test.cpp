@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"
-#include "analysis/statistics/base/ranks.h"
 #include "analysis/statistics/tests/wilcoxon.h"
 #include "analysis/statistics/variance/anova.h"
 #include "core/base/random.h"

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/base/definition/labels.h"
 #include "core/base/error.h"
 
 namespace haptrial {

@@ -13,7 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/bone/atlas/compare_labels.h"
-#include "core/bone/data/temporal_bone.h"
+#include "core/bone/data/procedural_bone.h"
 
 namespace haptrial::bone::label_scan_test {
 namespace {
@@ -51,7 +51,7 @@ BoneModel warped(const BoneModel& ear) {
         const Eigen::Vector3i voxel = from.array().round().cast<int>();
         if ((voxel.array() >= 0).all() && voxel.x() < size[0] && voxel.y() < size[1] &&
             voxel.z() < size[2]) {
-          const std::size_t there = ear.grid.index(voxel.x(), voxel.y(), voxel.z());
+          const std::size_t there = ear.grid.index(voxel);
           scan.labels[at] = ear.labels[there];
           scan.density[at] =
               ear.density.empty() ? (ear.labels[there] != 0 ? 1.0F : 0.0F) : ear.density[there];

@@ -52,17 +52,13 @@ class ImportTest : public ::testing::Test {
 Eigen::Vector3d place_of(const BoneModel& model, std::uint8_t label) {
   Eigen::Vector3d place = Eigen::Vector3d::Constant(1e9);
   int count = 0;
-  for (int k = 0; k < model.grid.size[2]; ++k) {
-    for (int j = 0; j < model.grid.size[1]; ++j) {
-      for (int i = 0; i < model.grid.size[0]; ++i) {
-        if (model.labels[model.grid.index(i, j, k)] != label) {
-          continue;
-        }
-        place = 1e3 * model.grid.centre(i, j, k);
-        ++count;
-      }
+  geometry::visit_voxels(model.grid, [&](const Eigen::Vector3i& voxel, std::size_t at) {
+    if (model.labels[at] != label) {
+      return;
     }
-  }
+    place = 1e3 * model.grid.centre(voxel);
+    ++count;
+  });
   EXPECT_EQ(count, 1);
   return place;
 }

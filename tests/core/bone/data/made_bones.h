@@ -15,15 +15,11 @@ namespace haptrial::test {
 inline std::vector<Eigen::Vector3d> places_of(const bone::BoneModel& model, bone::Anatomy label) {
   std::vector<Eigen::Vector3d> places;
   const geometry::VoxelGrid& grid = model.grid;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        if (model.labels[grid.index(i, j, k)] == static_cast<std::uint8_t>(label)) {
-          places.push_back(1e3 * grid.centre(i, j, k));
-        }
-      }
+  geometry::visit_voxels(grid, [&](const Eigen::Vector3i& voxel, std::size_t at) {
+    if (model.labels[at] == static_cast<std::uint8_t>(label)) {
+      places.push_back(1e3 * grid.centre(voxel));
     }
-  }
+  });
   return places;
 }
 

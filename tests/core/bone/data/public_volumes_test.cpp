@@ -54,22 +54,18 @@ void expect_body(const BoneModel& model, const Vector3d& moved = Vector3d::Zero(
   constexpr double kEdge = 1.0;
   std::size_t wrong = 0, held = 0;
   const geometry::VoxelGrid& grid = model.grid;
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        const Vector3d p = 1e3 * grid.centre(i, j, k) - moved;
-        const bool bone = model.labels[grid.index(i, j, k)] != 0;
-        bool near = false;
-        for (int axis = 0; axis < 3; ++axis) {
-          for (const double side : {-kEdge, kEdge}) {
-            near = near || is_bone(p + side * Vector3d::Unit(axis)) != is_bone(p);
-          }
-        }
-        held += bone ? 1 : 0;
-        wrong += !near && bone != is_bone(p) ? 1 : 0;
+  geometry::visit_voxels(grid, [&](const Eigen::Vector3i& voxel, std::size_t at) {
+    const Vector3d p = 1e3 * grid.centre(voxel) - moved;
+    const bool bone = model.labels[at] != 0;
+    bool near = false;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const double side : {-kEdge, kEdge}) {
+        near = near || is_bone(p + side * Vector3d::Unit(axis)) != is_bone(p);
       }
     }
-  }
+    held += bone ? 1 : 0;
+    wrong += !near && bone != is_bone(p) ? 1 : 0;
+  });
   EXPECT_EQ(wrong, 0u);
   EXPECT_NEAR(static_cast<double>(held) * std::pow(1e3 * grid.spacing, 3), kBodyVolume,
               0.06 * kBodyVolume);

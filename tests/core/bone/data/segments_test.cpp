@@ -65,7 +65,7 @@ class SegmentsTest : public ::testing::Test {
   std::string name_at(const BoneModel& model, const Eigen::Vector3d& place_mm) {
     const Eigen::Vector3i at =
         ((1e-3 * place_mm - model.grid.origin) / model.grid.spacing).array().round().cast<int>();
-    return model.structures[model.labels[model.grid.index(at.x(), at.y(), at.z())]].name;
+    return model.structures[model.labels[model.grid.index(at)]].name;
   }
   test::TemporaryFolder folder_;
 };
@@ -277,17 +277,13 @@ TEST_F(SegmentsTest, WhatIsCroppedLiesWhereItLay) {
       const BoneModel part = load("scan.nrrd", nrrd_of(volume), options);
       std::size_t inside = 0;
       const geometry::VoxelGrid& grid = whole.grid;
-      for (int k = 0; k < grid.size[2]; ++k) {
-        for (int j = 0; j < grid.size[1]; ++j) {
-          for (int i = 0; i < grid.size[0]; ++i) {
-            const Eigen::Vector3d p = 1e3 * grid.centre(i, j, k);
-            if (whole.labels[grid.index(i, j, k)] != 0 && options.crop->contains(1e-3 * p)) {
-              ++inside;
-              EXPECT_EQ(name_at(part, p), name_at(whole, p)) << p.transpose();
-            }
-          }
+      geometry::visit_voxels(grid, [&](const Eigen::Vector3i& voxel, std::size_t at) {
+        const Eigen::Vector3d p = 1e3 * grid.centre(voxel);
+        if (whole.labels[at] != 0 && options.crop->contains(1e-3 * p)) {
+          ++inside;
+          EXPECT_EQ(name_at(part, p), name_at(whole, p)) << p.transpose();
         }
-      }
+      });
       EXPECT_GT(inside, 50U);
       EXPECT_EQ(summary_of(part).voxels, inside) << degrees << grey;
       EXPECT_THAT(part.source, HasSubstr("cropped"));

@@ -187,9 +187,8 @@ TEST(BurrCellsTest, APlungeLeavesNoCrumbs) {
   for (std::int32_t at = BoneVolume::kBrickVoxels; at < bone.bricks() * BoneVolume::kBrickVoxels;
        ++at) {
     const Voxel v = bone.voxel_at(at);
-    const double from =
-        (grid.centre(v.x(), v.y(), v.z()) - Vector3d(1e-5, 2e-5, r - kDepth)).norm();
-    if (grid.centre(v.x(), v.y(), v.z()).z() < 0.0 && from < r - std::sqrt(3.0) * kFine) {
+    const double from = (grid.centre(v) - Vector3d(1e-5, 2e-5, r - kDepth)).norm();
+    if (grid.centre(v).z() < 0.0 && from < r - std::sqrt(3.0) * kFine) {
       ++inside;
       left += bone.density(at) > 0.0F ? 1 : 0;
     }

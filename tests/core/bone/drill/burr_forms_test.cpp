@@ -51,7 +51,7 @@ double segment(double radius, double depth) {
 TEST(BurrFormsTest, SamplesFillTheShapeWithTheirImages) {
   for (const BurrDimensions& dimensions : kForms) {
     const Burr burr(few_samples(dimensions));
-    EXPECT_NEAR(burr.samples(), 11494, 200) << name_of(dimensions.form);
+    EXPECT_NEAR(burr.samples(), 11494, 200) << static_cast<int>(dimensions.form);
     EXPECT_NEAR(burr.samples() * burr.sample_volume(), burr.shape().volume(),
                 1e-12 * burr.shape().volume());
     std::set<std::array<int, 3>> places;

@@ -72,8 +72,8 @@ int left_under(BoneVolume& bone, const Vector3d& tip) {
   int left = 0;
   for (std::int32_t at = 512; at < bone.bricks() * 512; ++at) {
     const Voxel v = bone.voxel_at(at);
-    left += bone.density(at) > 0.0F &&
-            (bone.grid().centre(v.x(), v.y(), v.z()) - tip).norm() < kRadius - kSpacing / 2.0;
+    left +=
+        bone.density(at) > 0.0F && (bone.grid().centre(v) - tip).norm() < kRadius - kSpacing / 2.0;
   }
   return left;
 }

@@ -50,13 +50,7 @@ inline BoneModel make_box(std::array<std::int32_t, 3> size) {
 /// All voxels of a grid.
 template <class F>
 void for_each_voxel(const geometry::VoxelGrid& grid, F&& f) {
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        f(Voxel(i, j, k));
-      }
-    }
-  }
+  geometry::visit_voxels(grid, [&](const Voxel& voxel, std::size_t) { f(voxel); });
 }
 
 inline std::int64_t voxels_in(const BoneVolume& volume) {
@@ -82,7 +76,7 @@ inline std::vector<std::vector<Voxel>> walk_parts(const geometry::VoxelGrid& gri
         return false;
       }
     }
-    return holds(v) && !seen[grid.index(v.x(), v.y(), v.z())];
+    return holds(v) && !seen[grid.index(v)];
   };
   std::vector<std::vector<Voxel>> parts;
   for_each_voxel(grid, [&](const Voxel& seed) {
@@ -90,13 +84,13 @@ inline std::vector<std::vector<Voxel>> walk_parts(const geometry::VoxelGrid& gri
       return;
     }
     parts.emplace_back(1, seed);
-    seen[grid.index(seed.x(), seed.y(), seed.z())] = true;
+    seen[grid.index(seed)] = true;
     for (std::size_t next = 0; next < parts.back().size(); ++next) {
       for (int axis = 0; axis < 3; ++axis) {
         for (const int step : {-1, 1}) {
           const Voxel beside = parts.back()[next] + step * Voxel::Unit(axis);
           if (fresh(beside)) {
-            seen[grid.index(beside.x(), beside.y(), beside.z())] = true;
+            seen[grid.index(beside)] = true;
             parts.back().push_back(beside);
           }
         }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <set>
 #include <thread>
@@ -65,7 +66,7 @@ TEST(BoneWorldTest, APartThatIsCutOffBecomesAPieceOnceWithItsDensitiesAndLabels)
   EXPECT_NEAR(events[0].amount, world.volume(1).amount(), 1e-9);
   ASSERT_EQ(world.pieces(), 2);
   for_each_voxel(model.grid, [&](const Voxel& v) {
-    const std::size_t at = model.grid.index(v.x(), v.y(), v.z());
+    const std::size_t at = model.grid.index(v);
     EXPECT_EQ(world.volume(0).density(v), v.x() < 25 ? model.density[at] : 0.0F);
     EXPECT_EQ(world.volume(1).density(v), v.x() > 25 ? model.density[at] : 0.0F);
     if (v.x() > 25) {
@@ -114,7 +115,6 @@ TEST(BoneWorldTest, SmallPartsTurnToDustAndAreAccountedFor) {
   EXPECT_EQ(events[0].voxels, 81);
   EXPECT_NEAR(events[0].amount, crumb, 1e-9);
   EXPECT_NEAR(before - world.volume(0).amount(), crumb, 1e-9);
-  EXPECT_EQ(world.crumbled(), events[0].amount);
   EXPECT_EQ(world.pieces(), 1);
 }
 
@@ -403,7 +403,7 @@ class DrilledWorld {
   void tick(BoneWorld& world, Wanderer& drill, std::int64_t tick) {
     step(world, tick);
     drill.drill(world, [this](const Voxel& v) {
-      float& density = shadow_[model_.grid.index(v.x(), v.y(), v.z())];
+      float& density = shadow_[model_.grid.index(v)];
       density = Wanderer::kBite < density ? density - Wanderer::kBite : 0.0F;
     });
   }
@@ -413,7 +413,7 @@ class DrilledWorld {
     double crumbled = 0.0;
     std::int64_t crumbs = 0;
     for_each_voxel(model_.grid, [&](const Voxel& v) {
-      const float left = shadow_[model_.grid.index(v.x(), v.y(), v.z())];
+      const float left = shadow_[model_.grid.index(v)];
       const int pieces = holders(world, v);
       ASSERT_LE(pieces, 1);
       if (pieces == 1) {
@@ -424,11 +424,14 @@ class DrilledWorld {
       }
     });
     std::int64_t told = 0;
+    double amount = 0.0;
     for (const Recorded& r : recorded_) {
-      told += r.event.kind == WorldEvent::Kind::kCrumb ? r.event.voxels : 0;
+      const bool crumb = r.event.kind == WorldEvent::Kind::kCrumb;
+      told += crumb ? r.event.voxels : 0;
+      amount += crumb ? r.event.amount : 0.0;
     }
     EXPECT_EQ(crumbs, told);
-    EXPECT_NEAR(crumbled, world.crumbled(), 1e-9);
+    EXPECT_NEAR(crumbled, amount, 1e-9);
   }
 
   const std::vector<Recorded>& recorded() const { return recorded_; }
@@ -499,7 +502,8 @@ TEST(BoneWorldTest, NothingIsLostWhileADrillCutsAndASearchRunsEveryFewTicks) {
   }
   expect_same(one, two);
   EXPECT_GT(one.pieces(), 5);
-  EXPECT_GT(one.crumbled(), 0.0);
+  EXPECT_TRUE(std::ranges::any_of(
+      first.recorded(), [](const auto& r) { return r.event.kind == WorldEvent::Kind::kCrumb; }));
 }
 
 TEST(BoneWorldTest, NothingIsLostBetweenAServoAndASearchingThreadAndTheReplayIsTheSame) {

@@ -10,7 +10,6 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/bone/region/crossing_row.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/message_of.h"
 

@@ -75,7 +75,7 @@ TEST(CutPlaneTest, WhatIsRemovedIsInTheBoxAndAllOfItsCentresAre) {
     EXPECT_NEAR(before - world.volume(0).amount(), tool.removed().amount, 1e-9);
     std::int64_t gone = 0;
     for_each_voxel(grid, [&](const Voxel& v) {
-      const Vector3d p_C = plane.pose_WC.inverse() * grid.centre(v.x(), v.y(), v.z());
+      const Vector3d p_C = plane.pose_WC.inverse() * grid.centre(v);
       const Vector3d beyond(std::abs(p_C.x()) - 0.5 * plane.width,
                             std::abs(p_C.y()) - 0.5 * plane.height,
                             std::max(-p_C.z(), p_C.z() - plane.depth));
@@ -116,9 +116,7 @@ TEST(CutPlaneTest, NoBridgeStaysWhateverTheAngleEvenWithoutDepth) {
     CutPlaneTool tool;
     cut(world, {looking(normal, through, random.uniform(0, 6)), 0.04, 0.04, 0.0}, tool);
     for_each_voxel(grid, [&](const Voxel& v) {
-      const auto side = [&](const Voxel& u) {
-        return normal.dot(grid.centre(u.x(), u.y(), u.z()) - through);
-      };
+      const auto side = [&](const Voxel& u) { return normal.dot(grid.centre(u) - through); };
       for (int axis = 0; axis < 3; ++axis) {
         const Voxel u = v + Voxel::Unit(axis);
         const bool bridge = world.volume(0).density(v) > 0.0F &&
@@ -228,9 +226,7 @@ TEST(CutPlaneTest, EachVoxelIsToldOnceWithItsPieceAndLabelAndNoStepEmptiesTooMan
   tool.begin(world, {looking(Vector3d::UnitZ(), place, 0.3), 0.012, 0.008, 0.3});
   std::map<std::size_t, std::pair<int, int>> told;  // piece and label, by index
   std::vector<int> holders(box.grid.count());
-  for_each_voxel(box.grid, [&](const Voxel& v) {
-    holders[box.grid.index(v.x(), v.y(), v.z())] = world.holder(v);
-  });
+  for_each_voxel(box.grid, [&](const Voxel& v) { holders[box.grid.index(v)] = world.holder(v); });
   std::size_t most = 0;
   while (tool.busy()) {
     const std::int64_t before = tool.removed().voxels;
@@ -239,14 +235,14 @@ TEST(CutPlaneTest, EachVoxelIsToldOnceWithItsPieceAndLabelAndNoStepEmptiesTooMan
     most = std::max(most, tool.emptied().size());
     for (const EmptiedIn& gone : tool.emptied()) {
       EXPECT_TRUE(gone.by_cut);
-      const std::size_t index = box.grid.index(gone.voxel.x(), gone.voxel.y(), gone.voxel.z());
+      const std::size_t index = box.grid.index(gone.voxel);
       EXPECT_TRUE(told.insert({index, {gone.piece, gone.label}}).second) << "told twice";
     }
   }
   EXPECT_EQ(most, CutPlaneTool::kMostEmptied) << "or the limit is not tried";
   EXPECT_EQ(static_cast<std::int64_t>(told.size()), tool.removed().voxels);
   for_each_voxel(box.grid, [&](const Voxel& v) {
-    const std::size_t index = box.grid.index(v.x(), v.y(), v.z());
+    const std::size_t index = box.grid.index(v);
     const auto row = told.find(index);
     const bool gone = holders[index] >= 0 && world.holder(v) < 0;
     ASSERT_EQ(gone, row != told.end()) << v.transpose();

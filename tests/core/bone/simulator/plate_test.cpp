@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/bone/simulator/plate_shapes.h"
 #include "core/geometry/files/mesh_io.h"
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/mesh_check.h"
 #include "tests/core/bone/model/pieces_support.h"
 #include "tests/support/allocation_guard.h"

@@ -59,10 +59,10 @@ TEST(SawTest, ASlotIsAsWideAsTheBladeToTheVoxel) {
   int inside = 0;
   for (std::int32_t address = 512; address < volume.bricks() * 512; ++address) {
     const Voxel voxel = volume.voxel_at(address);
-    if (model.labels[model.grid.index(voxel.x(), voxel.y(), voxel.z())] == 0) {
+    if (model.labels[model.grid.index(voxel)] == 0) {
       continue;
     }
-    const Vector3d p = model.grid.centre(voxel.x(), voxel.y(), voxel.z());
+    const Vector3d p = model.grid.centre(voxel);
     const bool deep = p.z() < z - kTeeth - 0.5 * kEdge - 1e-5;
     const bool beyond = std::abs(p.x()) > 0.5 * (blade.width + kEdge) + 1e-5 ||
                         std::abs(p.y()) > 0.5 * (blade.kerf + kEdge) + 1e-5;

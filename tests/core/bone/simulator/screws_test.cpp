@@ -24,8 +24,7 @@ BoneModel layered() {
   model.density.assign(model.grid.count(), 1.0F);
   test::for_each_voxel(model.grid, [&](const Voxel& v) {
     const bool marrow = v.z() < 32 - 6;
-    model.density[model.grid.index(v.x(), v.y(), v.z())] =
-        marrow ? static_cast<float>(kMarrow) : 1.0F;
+    model.density[model.grid.index(v)] = marrow ? static_cast<float>(kMarrow) : 1.0F;
   });
   return model;
 }

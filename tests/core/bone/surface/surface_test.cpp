@@ -37,13 +37,7 @@ void empty(BoneVolume& volume, const Voxel& voxel) {
 
 template <class Visit>
 void for_each_voxel(const geometry::VoxelGrid& grid, Visit&& visit) {
-  for (int k = 0; k < grid.size[2]; ++k) {
-    for (int j = 0; j < grid.size[1]; ++j) {
-      for (int i = 0; i < grid.size[0]; ++i) {
-        visit(Voxel(i, j, k));
-      }
-    }
-  }
+  geometry::visit_voxels(grid, [&](const Voxel& voxel, std::size_t) { visit(voxel); });
 }
 
 /// Something that changes a volume somewhere, as seeded.

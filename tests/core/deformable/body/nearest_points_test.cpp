@@ -1,4 +1,4 @@
-#include "core/deformable/body/nearest_points.h"
+#include "core/deformable/body/skin.h"
 
 #include <gtest/gtest.h>
 

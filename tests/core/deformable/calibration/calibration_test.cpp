@@ -12,7 +12,6 @@
 #include "core/deformable/calibration/calibrate.h"
 #include "core/deformable/calibration/global_start.h"
 #include "core/deformable/calibration/made_loads.h"
-#include "core/deformable/calibration/starting_constants.h"
 #include "core/deformable/springs/equilibrium.h"
 #include "core/deformable/springs/spring_grid.h"
 #include "tests/support/message_of.h"

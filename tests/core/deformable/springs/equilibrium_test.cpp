@@ -9,7 +9,8 @@
 
 #include <cmath>
 
-#include "core/deformable/springs/stable_step.h"
+#include "core/deformable/springs/spring_motion.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "tests/support/message_of.h"
 #include "tests/support/solid_block.h"
 
@@ -64,11 +65,11 @@ TEST(EquilibriumTest, IsWhereTheDampedMotionComesToRest) {
   const std::vector<std::int32_t> held = held_vertices(c.load);
   SpringMotion motion(c.body, {0.9 * stable_step(c.body, held), 0.01}, held);
   apply(c.load, c.body, motion);
-  RestCriterion criterion;
-  criterion.below = {1e-7, 1e-8, 1e-4, 1e-5};
-  ASSERT_EQ(settle(motion, criterion).outcome, Settling::kSettled);
-  criterion.below = {1e-8, 1e-9, 1e-5, 1e-6};
-  ASSERT_EQ(settle(motion, criterion).outcome, Settling::kSettled);
+  for (double quiet_since = 0.0; motion.time() - quiet_since < 0.01;) {
+    ASSERT_LT(motion.time(), 40.0);
+    motion.step();
+    quiet_since = motion.fastest() < 1e-8 ? quiet_since : motion.time();
+  }
   EXPECT_LT(largest_way(motion.positions(), found.positions),
             1e-6 * largest_way(motion.positions(), c.body.rest));
 }
@@ -212,24 +213,6 @@ TEST(EquilibriumTest, ABodyThatNothingHoldsIsRefused) {
   c.load.holds.clear();
   EXPECT_NE(test::message_of([&] { equilibrium(c.body, c.load); }).find("nothing holds"),
             std::string::npos);
-}
-
-TEST(SettleTest, AnUnstableStepIsNamed) {
-  const Case c = pushed_block({2, 2, 3}, {0.02, 0, -0.03});
-  const std::vector<std::int32_t> held = held_vertices(c.load);
-  SpringMotion motion(c.body, {1.2 * stable_step(c.body, held), 0.01, true}, held);
-  apply(c.load, c.body, motion);
-  EXPECT_EQ(settle(motion, {}).outcome, Settling::kUnstable);
-}
-
-TEST(SettleTest, WithoutDampingItIsNotInTime) {
-  const Case c = pushed_block({2, 2, 3}, {0.02, 0, -0.03});
-  const std::vector<std::int32_t> held = held_vertices(c.load);
-  SpringMotion motion(c.body, {0.5 * stable_step(c.body, held), 0.0}, held);
-  apply(c.load, c.body, motion);
-  RestCriterion criterion;
-  criterion.within = 0.5;
-  EXPECT_EQ(settle(motion, criterion).outcome, Settling::kNotInTime);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "core/base/random.h"
-#include "core/deformable/springs/lattice_kinds.h"
+#include "core/deformable/springs/force_kernel.h"
 #include "tests/support/solid_block.h"
 
 namespace haptrial::deformable {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.h"
-#include "core/deformable/springs/compliance.h"
 #include "tests/support/solid_block.h"
 
 namespace haptrial::deformable {

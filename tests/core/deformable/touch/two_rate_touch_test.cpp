@@ -11,7 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/deformable/springs/compliance.h"
+#include "core/deformable/springs/spring_tangent.h"
 #include "tests/core/deformable/touch/soft_block.h"
 #include "tests/support/allocation_guard.h"
 

@@ -18,13 +18,13 @@ namespace haptrial::geometry {
 namespace {
 
 using ::testing::HasSubstr;
-using Corners = std::vector<Eigen::Vector2d>;
+using Polygon = std::vector<Eigen::Vector2d>;
 
-const Corners kAngle{{4, 1}, {1, 1}, {1, 4}, {0, 4}, {0, 0}, {4, 0}};
+const Polygon kAngle{{4, 1}, {1, 1}, {1, 4}, {0, 4}, {0, 0}, {4, 0}};
 
 /// A prism of height 1 over a polygon whose first corner in the file is `first`.
 struct Prism {
-  Corners corners;
+  Polygon corners;
   std::size_t first{0};
 
   std::vector<std::vector<std::size_t>> faces() const {
@@ -101,8 +101,8 @@ TEST(CutFaceTest, AConcaveFaceHasItsAreaFromEveryFirstCornerInEveryFormat) {
 }
 
 TEST(CutFaceTest, StarsAndCombsOfManyCornersHaveTheirArea) {
-  Corners star;
-  Corners comb;
+  Polygon star;
+  Polygon comb;
   constexpr int kTeeth = 60;
   for (int i = 0; i < 2 * kTeeth; ++i) {
     const double angle = std::numbers::pi * i / kTeeth;
@@ -114,7 +114,7 @@ TEST(CutFaceTest, StarsAndCombsOfManyCornersHaveTheirArea) {
   for (int i = kTeeth; i > 0; --i) {
     comb.insert(comb.end(), {{i, 5.0}, {i - 0.5, 5.0}, {i - 0.5, 1.0}, {i - 1.0, 1.0}});
   }
-  for (const Corners& corners : {star, comb}) {
+  for (const Polygon& corners : {star, comb}) {
     double exact = 0.0;  // Gauss's formula, and the sides
     for (std::size_t i = 0; i < corners.size(); ++i) {
       const Eigen::Vector2d& a = corners[i];
@@ -128,7 +128,7 @@ TEST(CutFaceTest, StarsAndCombsOfManyCornersHaveTheirArea) {
 }
 
 TEST(CutFaceTest, AFaceWithAHoleThroughABridgeIsCut) {
-  const Corners framed{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0},
+  const Polygon framed{{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0},
                        {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}};
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::int32_t> corners;
@@ -145,7 +145,7 @@ TEST(CutFaceTest, AFaceWithAHoleThroughABridgeIsCut) {
 TEST(CutFaceTest, AFaceThatCrossesItselfIsNamed) {
   EXPECT_THAT(refusal_of_prism({{{0, 0}, {4, 0}, {0, 3}, {4, 4}}}),
               HasSubstr("m: face 1 with 4 corners crosses itself"));
-  Corners pentagram;
+  Polygon pentagram;
   for (int i = 0; i < 5; ++i) {
     const double angle = 0.8 * std::numbers::pi * i;
     pentagram.emplace_back(std::cos(angle), std::sin(angle));

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/mesh_check.h"
 
 namespace haptrial::geometry {

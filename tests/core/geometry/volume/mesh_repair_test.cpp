@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "core/geometry/mesh/mesh_volume.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/mesh/procedural.h"
 #include "core/geometry/volume/mesh_check.h"
 

@@ -171,10 +171,6 @@ TEST(PsychometricFunctionTest, DerivativesAgreeWithDifferences) {
       const double slope = (psi(level + h) - psi(level - h)) / (2.0 * h);
       EXPECT_NEAR(psi.derivative(level), slope, 1e-6 * (1.0 + std::abs(slope)));
     }
-    EXPECT_NEAR(std::abs(psi.derivative_at(p.axis.at(5.0))), slope_at_threshold(p), 1e-12);
-    auto other = p;
-    other.width = width_for_slope(p, 2.0);
-    EXPECT_NEAR(slope_at_threshold(other), 2.0, 1e-12);
   }
 }
 
@@ -185,7 +181,7 @@ TEST(PsychometricFunctionTest, AWeibullInDecibelIsThatOfWatson) {
   p.axis = {Scale::kDecibel, 0.0};
   p.threshold = std::pow(10.0, -20.0 / 20.0);
   p.share = 1.0 - std::exp(-1.0);
-  p.width = width_of_rate(p.sigmoid, rate_of_weibull_shape(3.5, Scale::kDecibel));
+  p.width = width_of_rate(p.sigmoid, 3.5 * std::numbers::ln10 / 20.0);
   p.guess = 0.5;
   p.lapse = 0.02;
   const PsychometricFunction psi(p);

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <vector>
 
 #include "core/psychometric/procedure/psi_definition.h"
@@ -71,8 +72,7 @@ QuestDefinition as_psi(const Json& domains) {
   p.levels = from_decibel(values_of(domains["x"]));
   p.threshold.values = from_decibel(values_of(domains["threshold"]));
   for (double shape : values_of(domains["slope"])) {
-    p.width.values.push_back(
-        width_of_rate(p.function.sigmoid, rate_of_weibull_shape(shape, Scale::kDecibel)));
+    p.width.values.push_back(width_of_rate(p.function.sigmoid, shape * std::numbers::ln10 / 20.0));
   }
   p.guess.values = values_of(domains["guess"]);
   p.lapse.values = values_of(domains["lapse"]);

@@ -1,4 +1,4 @@
-#include "core/record/hdf5/disk_sync.h"
+#include "core/record/hdf5/disk.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,10 @@
-#include "core/record/read/trial_progress.h"
+#include "core/record/read/session_facts.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "core/record/hdf5/session_writer.h"
-#include "core/record/read/trial_facts_of.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -1,9 +1,9 @@
 #include "core/record/recovery/session_resume.h"
 #include "core/base/file_text.h"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -11,13 +11,13 @@
 #include <fstream>
 
 #include "core/base/error.h"
-#include "core/bone/record/field_row.h"
+#include "core/bone/record/bone_rows.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/recover.h"
+#include "core/record/rows/answer_rows.h"
 #include "core/record/rows/common_tables.h"
-#include "core/record/rows/response.h"
 #include "core/record/table/schema.h"
 #include "tests/core/record/session_fixture.h"
 

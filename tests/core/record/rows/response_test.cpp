@@ -14,7 +14,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/recovery/recover.h"
 #include "core/record/recovery/session_resume.h"
-#include "core/record/rows/response.h"
+#include "core/record/rows/answer_rows.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {

@@ -52,32 +52,10 @@ TEST(BoneCameraTest, TheWholeBoxFitsAndTouchesAnEdge) {
                std::invalid_argument);
 }
 
-TEST(BoneCameraTest, OrbitsKeepTheDistanceAndStopAtThePoles) {
-  const Camera right = orbited(kCamera, 0.3, 0.0);
-  EXPECT_NEAR(right.distance(), kCamera.distance(), 1e-12);
-  const Eigen::Vector3d before = kCamera.eye - kCamera.target;
-  const Eigen::Vector3d after = right.eye - right.target;
-  EXPECT_NEAR(after.z(), before.z(), 1e-12);
-  EXPECT_NEAR(std::atan2(after.y(), after.x()) - std::atan2(before.y(), before.x()), 0.3, 1e-12);
-  EXPECT_GT((right.eye - kCamera.eye).dot(kCamera.pose().linear().col(0)), 0.0) << "to the right";
-  EXPECT_GT(orbited(kCamera, 0.0, 0.2).eye.z(), kCamera.eye.z());
-  Camera camera = kCamera;
-  for (int step = 0; step < 100; ++step) {
-    camera = orbited(camera, 0.1, 0.1);
-    ASSERT_TRUE(camera.pose().matrix().allFinite());
-  }
-  EXPECT_GT((camera.eye - camera.target).normalized().z(), 0.999);
-  EXPECT_LT((camera.eye - camera.target).normalized().z(), 1.0);
-}
-
 TEST(BoneCameraTest, ZoomMakesThingsAsManyTimesAsLarge) {
   const Eigen::Vector3d point = kCamera.target + 0.004 * kCamera.pose().linear().col(1);
   const double before = clip(view_of(kCamera, 1.0), point).y();
   EXPECT_NEAR(clip(view_of(zoomed(kCamera, 3.0), 1.0), point).y(), 3.0 * before, 1e-9);
-  const Camera moved = translated(kCamera, 0.01, -0.02);
-  EXPECT_NEAR((moved.target - kCamera.target).norm(), std::hypot(0.01, 0.02), 1e-12);
-  EXPECT_NEAR(clip(view_of(moved, 1.0), kCamera.target).x(),
-              -0.01 / (kCamera.distance() * std::tan(0.2)), 1e-9);
 }
 
 TEST(BoneCameraTest, AStereoPairConvergesWhereItIsToldTo) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/camera.h"
 #include "core/base/random.h"
 #include "tests/core/bone/surface/surface_checks.h"
 
@@ -42,6 +43,13 @@ inline void change_at_random(bone::BoneVolume& volume, RandomStream& random) {
   const std::array amounts{1.0F, 1.0F, 0.4F, -1.0F};
   change(volume, some_voxel(volume, random), 1 + static_cast<int>(random.below(5)),
          amounts[random.below(amounts.size())]);
+}
+
+/// The eye goes round the target about `up` [rad].
+inline Camera gone_round(Camera camera, double turn) {
+  const Eigen::AngleAxisd by(turn, camera.up.normalized());
+  camera.eye = camera.target + by * (camera.eye - camera.target);
+  return camera;
 }
 
 /// A ball with bumps; `nerve` of label 2 runs through.

@@ -167,7 +167,7 @@ TEST_P(BoneLayerTest, APictureThatIsKeptIsThatOfAFullRedraw) {
   };
   for (int round = 0; round < 3; ++round) {
     for (int step = 0; step < 3; ++step) {
-      frame.camera = orbited(frame.camera, 0.1, 0.02);
+      frame.camera = gone_round(frame.camera, 0.1);
       change_at_random(volume, random);
       ASSERT_NO_FATAL_FAILURE(next("a camera that moves", step));
       EXPECT_EQ(pixels.back(), static_cast<std::size_t>(kWidth * kHeight));

@@ -13,6 +13,7 @@
 #include "core/render/bone/bone_tools.h"
 #include "core/render/gl/offscreen.h"
 #include "tests/core/bone/surface/surface_checks.h"
+#include "tests/core/render/bone/bone_changes.h"
 #include "tests/core/render/flat/pixels.h"
 
 namespace haptrial::render::bone_scene_test {
@@ -127,7 +128,7 @@ TEST(BoneSceneTest, TheVisibleArrayShowsWhatTheCompleteOneShows) {
   EXPECT_LT(10 * stage.scene.figures().drawn, 7 * stage.scene.figures().triangles);
   // A triangle that faces the eye while none of its vertices' normals do lies at an outline.
   EXPECT_LT(count_different(complete, visible), 0.002 * kWidth * kHeight);
-  frame.camera = orbited(frame.camera, 0.1, 0.0);
+  frame.camera = gone_round(frame.camera, 0.1);
   stage.draw(frame);
   EXPECT_FALSE(stage.scene.figures().visible_only) << "it moves again";
 }

@@ -4,11 +4,20 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/render/flat/trial_display.h"
 #include "core/render/flat/view.h"
 #include "core/render/gl/colour.h"
 #include "core/render/gl/image.h"
 
 namespace haptrial::render {
+
+inline Image render_presentation(const TrialDisplayStyle& style,
+                                 std::span<const Eigen::Vector3d> trajectory,
+                                 const stimulus::Presentation& presentation) {
+  FrameRenderer renderer(style);
+  renderer.set_trajectory(trajectory);
+  return renderer.draw(presentation);
+}
 
 /// The whole picture as a rectangle [px].
 inline Rectangle all_of(const Image& image) {

@@ -10,7 +10,6 @@
 #include <thread>
 #include <vector>
 
-#include "core/render/flat/frames.h"
 #include "core/render/gl/offscreen.h"
 #include "tests/core/render/flat/pixels.h"
 

@@ -9,7 +9,6 @@
 #include <thread>
 
 #include "core/base/error.h"
-#include "core/render/flat/frames.h"
 #include "core/render/flat/text_screen.h"
 #include "core/render/flat/trial_display.h"
 #include "tests/core/render/flat/pixels.h"

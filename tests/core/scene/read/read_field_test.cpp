@@ -12,7 +12,7 @@
 
 #include "core/base/definition/table.h"
 #include "core/scene/read/field_kinds.h"
-#include "core/scene/read/read_region.h"
+#include "core/scene/read/shape_kinds.h"
 #include "core/scene/scene.h"
 #include "tests/support/message_of.h"
 

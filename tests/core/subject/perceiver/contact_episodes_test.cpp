@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/subject/perceiver/upper_mean.h"
 #include "tests/core/subject/perceiver/hand_rig.h"
 
 namespace haptrial::subject::encounters_test {

@@ -1,4 +1,4 @@
-#include "core/subject/perceiver/cue_combination.h"
+#include "core/subject/perceiver/sight.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include "core/base/error.h"
 #include "core/render/bone/bone_stills.h"
 #include "protocols/bone_drilling/display/bone_display.h"
-#include "protocols/bone_drilling/display/bone_renderer.h"
+#include "protocols/bone_drilling/display/bone_pictures.h"
 #include "protocols/bone_drilling/drilling_pass.h"
 #include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"

@@ -1,11 +1,11 @@
-#include "protocols/psychophysics/definition/variables.h"
+#include "protocols/psychophysics/definition/names.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-#include "core/base/definition/labels.h"
+#include "core/base/definition/expression.h"
 #include "core/base/error.h"
 
 namespace haptrial::protocols {

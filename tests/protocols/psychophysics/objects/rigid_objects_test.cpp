@@ -1,4 +1,4 @@
-#include "protocols/psychophysics/objects/rigid_objects.h"
+#include "protocols/psychophysics/objects/object_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include "core/geometry/mesh/procedural.h"
 #include "protocols/psychophysics/definition/every_value.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
-#include "protocols/psychophysics/objects/outline.h"
+#include "protocols/psychophysics/objects/seen_bodies.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"

@@ -6,10 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/questions/number_kind.h"
 #include "core/questions/question_kinds.h"
-#include "core/questions/scale_kind.h"
-#include "core/questions/words_kind.h"
 #include "protocols/psychophysics/presentation/pass_rows.h"
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "tests/support/allocation_guard.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/questions/scale_kind.h"
+#include "core/questions/question_kinds.h"
 #include "protocols/psychophysics/presentation/pass_rows.h"
 #include "protocols/psychophysics/presentation/trial_page.h"
 #include "protocols/psychophysics/presentation/trial_pass.h"

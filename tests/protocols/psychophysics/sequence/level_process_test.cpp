@@ -1,6 +1,6 @@
 // A script that is asked for levels: what it may do, and that nothing of it stops a session.
 
-#include "protocols/psychophysics/sequence/level_script.h"
+#include "protocols/psychophysics/sequence/scripted_levels.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

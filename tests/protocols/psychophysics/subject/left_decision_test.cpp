@@ -1,16 +1,16 @@
 // A decision that a virtual participant leaves to the session's thread: no tick waits for it or
 // allocates, and an answer that nobody waits for any more is dropped.
-
-#include "protocols/psychophysics/presentation/left_decision.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "core/base/definition/table.h"
-#include "protocols/psychophysics/studied_definition.h"
+#include "core/questions/question_kinds.h"
+#include "protocols/psychophysics/presentation/trial_view.h"
+#include "protocols/psychophysics/subject/decider.h"
 #include "protocols/psychophysics/subject/trials_rig.h"
 #include "protocols/psychophysics/trials_protocol.h"
 #include "tests/support/allocation_guard.h"
@@ -120,6 +120,29 @@ TEST(LeftDecisionMailboxTest, AnAnswerThatNobodyWaitsForIsDropped) {
   left.answer({2, {}, 0.0});
   ASSERT_NE(left.answer(), nullptr);
   EXPECT_EQ(left.answer()->choice, 2);
+}
+
+constexpr std::array kTwoIntervals{4.0, 16.0};  // percepts
+
+TEST(DeciderTest, TheLastIntervalIsJudgedWhateverCameBefore) {
+  ObserverPlan plan;
+  subject::JudgementParameters judgement;
+  judgement.exponent = 0.5;
+  judgement.criterion = 8.0;
+  TrialQuestion number;
+  number.kind = &questions::number_kind();
+  number.high = 1000.0;
+  plan.decides = Decides::kMagnitude;
+  const auto said = Decider(plan, judgement, 1).decide(number, true, kTwoIntervals);
+  EXPECT_NEAR(given_answer(number, said.choice, said.draft).value, 4.0, 1e-12);
+  TrialQuestion choice;
+  choice.choices.resize(2);
+  plan.decides = Decides::kYes;
+  plan.yes = 1;
+  EXPECT_EQ(Decider(plan, judgement, 1).decide(choice, true, kTwoIntervals).choice, 1);
+  plan.decides = Decides::kNearest;
+  plan.prototypes = {4.0, 16.0};
+  EXPECT_EQ(Decider(plan, judgement, 1).decide(choice, true, kTwoIntervals).choice, 1);
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+#include "protocols/interface/replay.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptrial::protocols {
+
+bool is_of(const record::PassRow& pass, const PlannedTrial& trial) {
+  return pass.trial == trial.trial && pass.practice == trial.practice &&
+         pass.condition == trial.condition;
+}
+
+std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const PlannedTrial& trial,
+                                        const record::Phase& last) {
+  std::optional<Outcome> found;
+  const bool skipped = std::ranges::any_of(recorded.skipped, [&](const record::SkippedRow& row) {
+    return row.trial == trial.trial && row.practice == trial.practice;
+  });
+  if (skipped) {
+    found = {trial, TrialEnd::kSkipped, {}};
+  }
+  for (std::size_t i = 0; i < recorded.passes.size(); ++i) {
+    const record::PassRow& pass = recorded.passes[i];
+    const bool taken_back = std::ranges::any_of(
+        recorded.taken_back, [i](const auto& row) { return std::cmp_equal(row.pass, i); });
+    if (taken_back || !is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
+      continue;
+    }
+    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
+    found = {trial, done ? TrialEnd::kCompleted : TrialEnd::kAborted, {}};
+    for (const record::ResponseRow& response : recorded.responses) {
+      const record::PassRow& of = recorded.passes[static_cast<std::size_t>(response.pass)];
+      if (is_of(of, trial) && of.attempt == pass.attempt) {
+        found->responses.push_back(response);
+      }
+    }
+  }
+  return found;
+}
+
+}  // namespace haptrial::protocols
