@@ -89,16 +89,40 @@ void SpringMotion::push(std::size_t vertex, const Vector3d& force) noexcept {
   positions_[vertex] += settings_.step * faster;
 }
 
-double SpringMotion::fastest() const noexcept {
-  double fastest = 0.0;
+Activity SpringMotion::activity() const noexcept {
+  Activity activity;
+  std::size_t free = 0;
   for (std::size_t v = 0; v < masses_.size(); ++v) {
-    const double speed = held(v) ? 0.0 : velocities_[v].norm();
-    if (std::isnan(speed)) {
-      return speed;
+    if (held(v)) {
+      continue;
     }
-    fastest = std::max(fastest, speed);
+    ++free;
+    const Vector3d drag = settings_.damping * velocities_[v];
+    const double speed = velocities_[v].norm();
+    const double acceleration = (forces_[v] - drag).norm() / masses_[v];
+    activity.max_speed = std::max(activity.max_speed, speed);
+    activity.max_acceleration = std::max(activity.max_acceleration, acceleration);
+    activity.mean_speed += speed;
+    activity.mean_acceleration += acceleration;
   }
-  return fastest;
+  if (free == 0) {
+    return {};
+  }
+  activity.mean_speed /= static_cast<double>(free);
+  activity.mean_acceleration /= static_cast<double>(free);
+  // A maximum passes over what is not a number; a mean does not.
+  if (!std::isfinite(activity.mean_speed)) {
+    activity.max_speed = activity.mean_speed;
+  }
+  if (!std::isfinite(activity.mean_acceleration)) {
+    activity.max_acceleration = activity.mean_acceleration;
+  }
+  return activity;
+}
+
+bool Activity::below(const Activity& limits) const noexcept {
+  return max_speed < limits.max_speed && mean_speed < limits.mean_speed &&
+         max_acceleration < limits.max_acceleration && mean_acceleration < limits.mean_acceleration;
 }
 
 double SpringMotion::kinetic_energy() const {

@@ -21,6 +21,15 @@ struct MotionSettings {
   InstructionSet instructions{best_instruction_set()};
 };
 
+/// How fast free vertices move, and how fast that changes. A body rests when all four stay below
+/// limits for some time. Source: Morris 2006, §5.3.3.
+struct Activity {
+  double max_speed{}, mean_speed{};                // [m/s]
+  double max_acceleration{}, mean_acceleration{};  // [m/s²]
+
+  bool below(const Activity& limits) const noexcept;
+};
+
 /// A body of springs in time, by Verlet's method with viscous damping, whose mean velocity over the
 /// step it takes:
 ///
@@ -48,9 +57,8 @@ class SpringMotion final : public BodyMotion {
   bool spreads() const noexcept override { return false; }
 
   std::uint64_t steps() const noexcept { return steps_; }
-  /// Speed of the fastest free vertex in the last step [m/s]; not a number if one is not. A body
-  /// rests when it stays low for some time. Source: Morris 2006, §5.3.3.
-  double fastest() const noexcept;
+  /// Speeds and accelerations of the last step; not a number if one is not.
+  Activity activity() const noexcept;
   double time() const noexcept { return static_cast<double>(steps_) * settings_.step; }  // [s]
 
   /// Kinetic energy at the time of the positions, with half a kick of the springs' forces [J].

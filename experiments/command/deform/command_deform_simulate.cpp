@@ -38,6 +38,7 @@ struct DeformSimulateOptions {
 };
 
 constexpr double kElementStep = 1e-3;  // [s]
+constexpr double kRestSpeed = 1e-5;    // of the fastest vertex [m/s]
 
 using Eigen::Vector3d;
 using Places = std::vector<Vector3d>;
@@ -48,7 +49,7 @@ class Stepper {
   virtual ~Stepper() = default;
   virtual void step() = 0;
   virtual double time() const = 0;
-  virtual double fastest() const = 0;  // vertex [m/s]
+  virtual bool quiet() const = 0;  // so slow that it may rest
   virtual Places displacement() const = 0;
   virtual std::vector<deformable::TetState> states() const = 0;
   virtual std::size_t inverted() const = 0;
@@ -63,7 +64,9 @@ class SpringStepper : public Stepper {
   }
   void step() override { motion_.step(); }
   double time() const override { return motion_.time(); }
-  double fastest() const override { return motion_.fastest(); }
+  bool quiet() const override {
+    return motion_.activity().below({kRestSpeed, 0.1 * kRestSpeed, 1e-2, 1e-3});
+  }
   Places displacement() const override {
     Places u = motion_.positions();
     for (std::size_t v = 0; v < u.size(); ++v) {
@@ -92,7 +95,7 @@ class ElementStepper : public Stepper {
   }
   void step() override { solver_.step(force_); }
   double time() const override { return solver_.time(); }
-  double fastest() const override { return longest_of(solver_.motion().velocity); }
+  bool quiet() const override { return longest_of(solver_.motion().velocity) < kRestSpeed; }
   Places displacement() const override { return solver_.motion().displacement; }
   std::vector<deformable::TetState> states() const override {
     return elastic_.states(solver_.motion().displacement);
@@ -199,15 +202,14 @@ int deform_simulate(const DeformSimulateOptions& options) {
     out.write(fmt::format("frame-{:04}.csv", times.size()), displacements_csv(body.mesh, u));
     times.push_back(stepper->time());
   };
-  constexpr double kRestSpeed = 1e-5;  // [m/s]
-  constexpr double kRestTime = 0.01;   // below it [s]
+  constexpr double kRestTime = 0.01;  // below it [s]
   double quiet_since = 0.0;
   bool rests = false;
   write();
   while (stepper->time() < seconds && !rests) {
     stepper->step();
     inverted = std::max(inverted, stepper->inverted());
-    if (!(stepper->fastest() < kRestSpeed)) {
+    if (!stepper->quiet()) {
       quiet_since = stepper->time();
     }
     rests = options.to_rest && stepper->time() - quiet_since >= kRestTime;
