@@ -62,7 +62,6 @@ std::int64_t last_time(const record::Resumed& before) {
 }
 
 using protocols::Outcome;
-using protocols::PlannedTrial;
 using protocols::TrialEnd;
 
 std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {

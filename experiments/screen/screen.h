@@ -124,8 +124,6 @@ class Screen final : public stimulus::Observer {
   std::unique_ptr<Impl> impl_;
 };
 
-class Screen;
-
 /// Small copies of the participant's picture, for the experimenter's console. Nothing is copied
 /// while nobody asks; a copy costs the screen's thread some milliseconds, and the rest is done on
 /// the thread that asks. Any thread but the servo and the screen's.

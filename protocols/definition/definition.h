@@ -194,8 +194,6 @@ void check_markers(Table& root, const Definition& definition);
 void reject_speed(Table& root, const Definition& definition, const char* table, const char* key,
                   double speed);
 
-struct Definition;
-
 /// The loop of the device with the longest velocity window, so that damping that is safe for it is
 /// safe with all devices of the definition.
 control::HandleLoop handle_loop(const Definition& definition);

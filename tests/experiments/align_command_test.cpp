@@ -259,11 +259,6 @@ TEST_F(AlignCommandTest, BashCompletesItsOptions) {
   EXPECT_EQ(options.output, "--open-begin --open-end\n");
 }
 
-namespace fs = std::filesystem;
-using test::CommandResult;
-using test::run_command;
-using testing::HasSubstr;
-
 class CompareCommandTest : public testing::Test {
  protected:
   /// Runs and analyses a small study of virtual subjects.

@@ -216,11 +216,6 @@ TEST_F(CertificateCommandTest, AFileThatIsNoCertificateIsRefused) {
 
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using Json = nlohmann::json;
-
 constexpr double kRadius = 0.02;  // [m]
 
 /// A trial in which one part is felt. @param stiffness  of its spring, in its own unit

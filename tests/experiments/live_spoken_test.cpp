@@ -257,9 +257,6 @@ TEST_F(LiveSpokenTest, WithoutAWindowThereIsNothingToSpeak) {
 
 namespace {
 
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-
 /// A configuration of ALSA whose card is a file of raw samples.
 void write_card(const fs::path& configuration, const fs::path& samples) {
   test::write_text(configuration,

@@ -138,11 +138,6 @@ TEST_F(LiveWindowKeysTest, BeginASessionWithoutAnExperimenter) {
 
 namespace {
 
-using test::CommandResult;
-using test::ConsolePerson;
-using test::LiveCommand;
-using testing::HasSubstr;
-
 TEST(LiveKeyboardTest, KeysSteerTheSessionAndTheTerminalIsPutBack) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";

@@ -97,7 +97,6 @@ TEST(LostDiskTest, TheForceFadesAndWhatWasRecordedIsKept) {
 
 namespace {
 
-namespace fs = std::filesystem;
 using test::CommandResult;
 using test::LiveCommand;
 using testing::HasSubstr;

@@ -280,7 +280,6 @@ TEST(SensorCertificateTest, TheNoiseOfASlowSensorIsThatOfItsMeasurements) {
 
 namespace {
 
-using Eigen::Vector3d;
 using testing::HasSubstr;
 
 channel::ChannelOptions sensor_at(int port) {

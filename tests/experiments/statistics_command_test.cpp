@@ -213,10 +213,6 @@ TEST_F(StatisticsCommandTest, WhatCannotBeTestedGetsASentence) {
 
 namespace {
 
-using test::CommandResult;
-using test::run_command;
-using testing::HasSubstr;
-
 std::string printed(const std::string& arguments) {
   const CommandResult result = run_command("haptrial power " + arguments);
   EXPECT_EQ(result.status, 0) << arguments << "\n" << result.errors;

@@ -80,7 +80,6 @@ std::string hints_csv(std::span<const HintProcedure> procedures) {
 
 namespace {
 
-using hint::HintKind;
 using HintRowText = std::vector<std::string>;
 
 /// Sum over the hints of some procedures of one condition.

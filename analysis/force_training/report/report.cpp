@@ -176,8 +176,6 @@ void add_path(Document& document, const StudyResult& study) {
 
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 constexpr std::size_t kMostRows = 100;  // of flagged trials; scores.csv has them all
 
 /// "4.2 %", "12.7 s", "49.6 ms".

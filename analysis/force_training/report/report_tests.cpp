@@ -221,8 +221,6 @@ void add_tests(Document& document, const StudyResult& study) {
 
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 std::string tested(const Coefficient& c) {
   return fmt::format("t({:.1f}) = {:.2f}, {}", c.df, c.t, p_value(c.p));
 }

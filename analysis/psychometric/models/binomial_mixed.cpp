@@ -96,10 +96,6 @@ MatrixXd lower_triangle(const VectorXd& elements, Index size) {
   return lower;
 }
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 /// The likelihood as a function of the elements of the lower triangle and the coefficients.
 class Marginalised {
  public:

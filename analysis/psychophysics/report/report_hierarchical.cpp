@@ -146,8 +146,6 @@ void add_hierarchical(Document& document, const TrialsResult& result) {
 
 namespace {
 
-using hierarchical::Posterior;
-
 const HierarchicalFunctions* converged(const TrialsResult& result) {
   const auto& made = result.hierarchical;
   return made && *made && (**made).fit.converged ? &**made : nullptr;

@@ -8,8 +8,8 @@
 namespace haptrial::analysis {
 
 /// p values of hypotheses tested together, adjusted, in the order given: a hypothesis is rejected
-/// at level a where its adjusted p is at most a. Holm's step-down procedure: the chance of any false
-/// rejection stays below a. Never weaker than Bonferroni's.
+/// at level a where its adjusted p is at most a. Holm's step-down procedure: the chance of any
+/// false rejection stays below a. Never weaker than Bonferroni's.
 /// @throws std::invalid_argument when a value is outside [0, 1] or not a number.
 /// Source: Holm 1979, Scandinavian Journal of Statistics 6.
 std::vector<double> holm_adjusted(std::span<const double> p_values);

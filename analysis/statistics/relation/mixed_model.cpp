@@ -163,11 +163,6 @@ std::optional<Slopes> lowest_point(const RestrictedLikelihood& likelihood) {
   return s;
 }
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-using Slopes = RestrictedLikelihood::Slopes;
-
 const char* const kExact = "nothing varies within the groups beyond what the predictors explain";
 
 std::string with_term(const std::string& reason, std::size_t term, std::size_t terms) {

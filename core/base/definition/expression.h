@@ -22,8 +22,6 @@ class Labels {
   std::vector<std::string> words_;
 };
 
-class Labels;
-
 /// A number of a definition: a constant, or a formula of variables such as
 ///
 ///     "$standard - conflict / 2"        "modality != 'visual' and level > 300"

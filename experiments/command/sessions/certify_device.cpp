@@ -202,8 +202,6 @@ void run_certificate(CertificateTask& task, device::Device& device, realtime::Se
   servo.join();
 }
 
-using analysis::CertificatePart;
-
 /// The channel that an option names. @throws InputError if the definition has no such channel
 const channel::ChannelOptions& sensor_of(const char* option, const std::string& name,
                                          const DeviceTestOptions& options,

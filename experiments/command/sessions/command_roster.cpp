@@ -91,7 +91,6 @@ struct RosterOptions {
   std::optional<int> jobs;
 };
 
-namespace fs = std::filesystem;
 using Row = std::vector<std::string>;
 
 std::string sessions_in(const RosterPerson& person, SessionState state, int sessions) {

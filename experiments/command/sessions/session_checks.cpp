@@ -95,7 +95,6 @@ std::vector<MachineCheck> channel_checks(const Experiment& experiment) {
 
 namespace fs = std::filesystem;
 using protocols::Definition;
-using State = MachineCheck::State;
 
 constexpr double kMegabyte = 1e6;
 

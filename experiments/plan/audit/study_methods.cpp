@@ -92,8 +92,6 @@ void add_study_methods() {
 
 namespace {
 
-namespace fs = std::filesystem;
-
 SessionFacts facts_of(const fs::path& file, bool excluded) {
   SessionFacts facts;
   facts.file = file;

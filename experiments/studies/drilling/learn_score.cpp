@@ -111,8 +111,6 @@ drilling::ScoreModel learn_study_score(const fs::path& folder) {
 
 namespace {
 
-namespace drilling = analysis::drilling;
-
 hint::SafeStructure limits_of(const drilling::SafeProfile& profile) {
   hint::SafeStructure structure{profile.structure, {}};
   for (const drilling::SafeBin& bin : profile.bins) {

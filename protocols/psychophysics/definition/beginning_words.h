@@ -50,8 +50,6 @@ class BeginningReport {
   std::map<Key, Push> pushes_;
 };
 
-struct TrialsDefinition;
-
 /// The stage whose fields add up to the greatest stiffness.
 struct StiffestStage {
   std::string name;       // empty: no stage has any

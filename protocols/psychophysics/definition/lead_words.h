@@ -32,9 +32,6 @@ class LeadReport {
   std::map<std::string, std::string> beside_;  // by stage: the sentence
 };
 
-struct Presented;
-struct TrialsDefinition;
-
 /// Gathers the regions that stages show outside of the participant's picture.
 class PictureReport {
  public:

@@ -10,7 +10,6 @@
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "protocols/force_training/training_pass.h"
-#include "protocols/force_training/trajectory_pass.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/free_mass.h"
 

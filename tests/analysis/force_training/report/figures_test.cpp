@@ -185,7 +185,6 @@ TEST_F(Figures, SayThatAPictureIsCutShort) {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 const Figure& named(const std::vector<Figure>& figures, const std::string& name) {
   const auto found =

@@ -176,8 +176,6 @@ TEST(StudyStatistics, OfNothingAndOfOneTrialIsNotDefined) {
   EXPECT_EQ(*one.summaries[0].mean, 2.0);
 }
 
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 const std::vector<std::string> kConditions{"haptic", "visual", "visuohaptic"};

@@ -118,8 +118,6 @@ TEST(Power, SaysWhyItIsNotDefined) {
   EXPECT_THAT(anova_detectable({3, 0.05}, 1.0, 0.8).because(), HasSubstr("participants"));
 }
 
-using testing::HasSubstr;
-
 RepeatedPlan plan_of(RepeatedTerm term, int groups = 2, int measurements = 3) {
   RepeatedPlan plan;
   plan.term = term;

@@ -223,7 +223,8 @@ TEST(BurrShapeTest, TheNearestPointIsThatOfItsOutlineAndTheNormalIsTheGradient) 
         // A step along the normal comes nearer by as much, but where two surfaces are as near.
         const double step = 1e-7;
         const double gained = shape.nearest(p + step * near.normal).distance - near.distance;
-        ASSERT_NEAR(gained, step, 1e-3 * step) << static_cast<int>(dimensions.form) << " " << p.transpose();
+        ASSERT_NEAR(gained, step, 1e-3 * step)
+            << static_cast<int>(dimensions.form) << " " << p.transpose();
       }
     }
   }
