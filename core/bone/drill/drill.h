@@ -69,7 +69,7 @@ class Drill {
   static constexpr std::int32_t kMostTaking = 20'000;
 
   /// @param structures  by label: how hard they are; labels beyond are as hard as bone
-  /// @param soft  by label: what the burr neither feels nor removes here (tools/soft_tissue.h)
+  /// @param soft  by label: what the burr neither feels nor removes here (simulator/soft_tissue.h)
   /// @throws std::invalid_argument when a hardness is not above 0 or the machine lacks `set`.
   Drill(const BurrParameters& burr, std::span<const Structure> structures,
         InstructionSet set = best_instruction_set(), const std::array<bool, 256>& soft = {});

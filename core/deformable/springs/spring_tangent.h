@@ -52,8 +52,8 @@ std::optional<std::vector<Eigen::Vector3d>> small_displacements(
     const SpringBody& body, std::span<const Hold> holds, std::span<const Eigen::Vector3d> positions,
     std::span<const Eigen::Vector3d> forces);
 
-/// linear/fastest_vibration.h of small motions about `positions` [1/s], with the exact Hessian
-/// there (spring_hessian.h).
+/// The fastest vibration (body/fastest_vibration.h) of small motions about `positions` [1/s], with
+/// the exact Hessian there (spring_hessian.h).
 double fastest_vibration(const SpringBody& body, std::span<const Eigen::Vector3d> positions,
                          std::span<const std::int32_t> held = {});
 

@@ -9,7 +9,7 @@ namespace haptrial::subject {
 
 /// The way between two fingertips that hold something, over an interval: the mean distance of the
 /// two while both touch and rest, or while both touch if they never rest. Touching and resting as
-/// in encounters.h. Servo thread: no allocation, lock, I/O or throw.
+/// in contact_episodes.h. Servo thread: no allocation, lock, I/O or throw.
 class Grip {
  public:
   /// A fingertip at a tick.

@@ -9,8 +9,8 @@
 
 namespace haptrial::subject {
 
-/// Feels a quantity through the hand, an interval at a time: what the hand meets (encounters.h),
-/// and how that is felt (felt.h).
+/// Feels a quantity through the hand, an interval at a time: what the hand meets
+/// (contact_episodes.h), and how that is felt (felt.h).
 ///
 ///     Sense sense(senses, Quantity::kStiffness);
 ///     sense.begin(random);                // the interval begins: its noise is drawn
