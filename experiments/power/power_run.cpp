@@ -14,7 +14,7 @@
 #include "core/base/parallel.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
-#include "experiments/study/unit_locks.h"
+#include "experiments/study/shared_work.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "experiments/server/address.h"
+#include "experiments/server/access.h"
 #include "experiments/server/bounded_server_internal.h"
 #include "experiments/server/connection.h"
 #include "experiments/server/listener.h"

@@ -41,7 +41,7 @@ struct WebAnswer {
 
 /// @param reason  a sentence without its full stop
 WebAnswer refusal(int status, const std::string& reason);
-/// A page with a nonce of its own and the policy that allows nothing else (address.h).
+/// A page with a nonce of its own and the policy that allows nothing else (access.h).
 /// @param more_policy  what the page may do besides, such as "frame-src 'self'"
 WebAnswer page_answer(std::string_view html, std::string_view more_policy = {});
 

@@ -20,8 +20,8 @@
 #include "experiments/runner/session.h"
 #include "experiments/runner/version.h"
 #include "experiments/study/session_name.h"
+#include "experiments/study/shared_work.h"
 #include "experiments/study/taught_session.h"
-#include "experiments/study/unit_locks.h"
 #include "protocols/definition/groups.h"
 
 namespace haptrial::experiments {

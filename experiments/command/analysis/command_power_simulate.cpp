@@ -10,7 +10,7 @@
 #include "experiments/command/subcommand.h"
 #include "experiments/control/signals.h"
 #include "experiments/power/power_run.h"
-#include "experiments/study/unit_locks.h"
+#include "experiments/study/shared_work.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

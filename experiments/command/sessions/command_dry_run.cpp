@@ -19,8 +19,8 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/session_times.h"
+#include "experiments/study/shared_work.h"
 #include "experiments/study/study_run.h"
-#include "experiments/study/unit_locks.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

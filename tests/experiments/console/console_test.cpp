@@ -14,7 +14,7 @@
 
 #include "core/base/error.h"
 #include "experiments/console/console_messages.h"
-#include "experiments/server/address.h"
+#include "experiments/server/access.h"
 #include "experiments/server/listener.h"
 #include "experiments/server/request_filter.h"
 #include "tests/experiments/console_client.h"

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "core/base/child_process.h"
-#include "experiments/study/unit_locks.h"
+#include "experiments/study/shared_work.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

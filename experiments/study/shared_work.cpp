@@ -1,4 +1,4 @@
-#include "experiments/study/unit_locks.h"
+#include "experiments/study/shared_work.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "experiments/server/address.h"
+#include "experiments/server/access.h"
 
 #include <arpa/inet.h>
 #include <fmt/format.h>

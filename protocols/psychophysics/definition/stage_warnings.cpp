@@ -1,4 +1,4 @@
-#include "protocols/psychophysics/definition/lead_words.h"
+#include "protocols/psychophysics/definition/stage_warnings.h"
 
 #include <fmt/format.h>
 
