@@ -1,4 +1,4 @@
-// haptrial align: curves of any origin, good and bad.
+// haptrial align and compare: curves of any origin, good and bad.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

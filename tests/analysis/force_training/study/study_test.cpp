@@ -1,4 +1,5 @@
-// Analysis from session files to a study, end to end.
+// Analysis from session files to a study, end to end, and who counts as the same
+// subject.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// Intervals of a function hold no number that it cannot have.
+// Intervals of a function hold no number that it cannot have, and that of a track its estimate.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Quantities of reaches between conditions: what enters a value, what is found, and that nothing is
-// found where there is nothing. bench_null_trials counts a thousand studies.
+// found where there is nothing. bench_null_trials counts a thousand studies. And how a hand that
+// pursues a target responds to it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

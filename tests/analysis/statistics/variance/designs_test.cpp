@@ -1,4 +1,5 @@
-// Two-way repeated-measures and mixed analyses of variance against simpler tests that they contain.
+// Two-way repeated-measures and mixed analyses of variance against simpler tests that they contain,
+// and designs of several factors against R.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Each variant of a made ear beside the plain one of the same seed, by counts of voxels and
-// distances between voxels that know nothing of the shapes.
+// distances between voxels that know nothing of the shapes. And on which side
+// an ear is, and the names of its parts.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

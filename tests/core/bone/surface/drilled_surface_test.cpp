@@ -1,4 +1,5 @@
-// Shape of a surface if bone is worn away by parts of voxels.
+// Shape of a surface if bone is worn away by parts of voxels, and the surface
+// that joins neighbours, to which it is compared.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Slices of a block with known densities: pixels are looked up by their place in millimetres.
+// Slices of a block with known densities: pixels are looked up by their place in millimetres. And
+// the plan in a layer of a block.
 
 #include <gtest/gtest.h>
 
