@@ -1,3 +1,7 @@
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/questions/kind_parts.h"
 #include "core/questions/question_kinds.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <future>
 #include <map>
+#include <optional>
 
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"

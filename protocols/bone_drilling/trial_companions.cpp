@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+#include <utility>
+
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/bone/nerve/nerve_rows.h"

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "analysis/document/palette.h"
 #include "analysis/force_training/report/study_figures.h"

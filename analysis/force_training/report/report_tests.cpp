@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/statistics/design/design_blocks.h"

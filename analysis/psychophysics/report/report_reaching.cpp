@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/psychophysics/report/trials_findings.h"

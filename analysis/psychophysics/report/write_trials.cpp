@@ -1,5 +1,7 @@
 #include "analysis/psychophysics/report/write_trials.h"
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "analysis/document/figure_gnuplot.h"

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "analysis/psychophysics/fit/function_fit.h"
 #include "analysis/statistics/base/distributions.h"

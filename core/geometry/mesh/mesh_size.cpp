@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include <cstdint>
+
 namespace haptrial::geometry {
 
 Eigen::AlignedBox3d bounds(const Mesh& mesh) {

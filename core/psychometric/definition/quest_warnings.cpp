@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "core/psychometric/definition/track.h"
 #include "core/psychometric/procedure/quest_plus.h"

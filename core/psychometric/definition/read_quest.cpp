@@ -10,6 +10,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "core/base/definition/expression.h"
 #include "core/base/definition/schema.h"

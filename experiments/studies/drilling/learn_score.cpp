@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "analysis/bone_drilling/report/ratings.h"
 #include "core/base/definition/definition_changes.h"

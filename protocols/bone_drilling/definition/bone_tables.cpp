@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "core/base/definition/schema.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"

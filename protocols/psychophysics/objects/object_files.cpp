@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <variant>
 
 #include "core/base/error.h"
 #include "core/contact/renderer_kinds.h"

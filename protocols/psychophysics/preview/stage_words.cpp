@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "core/channel/channel_options.h"
 #include "core/render/gl/offscreen.h"

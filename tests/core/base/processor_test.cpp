@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include "core/base/instruction_set.h"
 #include "core/base/one_processor.h"

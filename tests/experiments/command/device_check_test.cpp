@@ -7,7 +7,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
+#include <string>
+#include <utility>
 
 #include "core/device/handle_physics.h"
 #include "core/device/virtual_device.h"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 
 #include "experiments/command/start/examples.h"
 #include "experiments/command/start/machine_checks.h"

@@ -7,7 +7,10 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "tests/experiments/shipped.h"
 #include "tests/support/temporary_folder.h"

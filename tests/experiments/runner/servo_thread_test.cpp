@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/servo_thread.h"
 #include "tests/support/message_of.h"

@@ -7,8 +7,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "core/bone/record/drilling_tables.h"

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "core/subject/drilling/cavity_chart.h"
 #include "tests/support/solid_bone.h"

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <string>
+
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

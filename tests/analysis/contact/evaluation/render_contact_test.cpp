@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "analysis/contact/evaluation/check_body.h"
 #include "analysis/contact/evaluation/render_contact.h"

@@ -11,6 +11,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "analysis/document/figure_gnuplot.h"
 #include "analysis/force_training/report/study_figures.h"

@@ -3,6 +3,7 @@
 #include <gsl/gsl_randist.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 

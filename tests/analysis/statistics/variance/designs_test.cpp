@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "analysis/statistics/tests/t_tests.h"
 #include "analysis/statistics/variance/multifactor_anova.h"

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/bone/data/bone_summary.h"

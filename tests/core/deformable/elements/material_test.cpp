@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <set>
+#include <vector>
 
 #include "core/deformable/elements/material.h"
 #include "core/deformable/elements/volume_patches.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "core/base/random.h"
 #include "core/deformable/touch/energy_account.h"

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 
 #include "core/render/flat/trial_display.h"
 #include "core/render/flat/view.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <numeric>
+#include <stdexcept>
 #include <string>
 
 #include "core/base/error.h"

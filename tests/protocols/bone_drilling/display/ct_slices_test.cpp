@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <thread>
+#include <vector>
 
 #include "protocols/bone_drilling/definition/placement.h"
 #include "protocols/bone_drilling/display/ct_slices.h"
