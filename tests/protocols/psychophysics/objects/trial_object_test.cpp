@@ -12,6 +12,7 @@
 #include "core/deformable/elements/setup_body.h"
 #include "core/deformable/springs/constants_table.h"
 #include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/mesh/procedural.h"
 #include "protocols/psychophysics/definition/every_value.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
@@ -38,20 +39,10 @@ std::vector<TrialObject> read(const std::string& text) {
   return objects;
 }
 
-/// Volume by the divergence theorem.
-double signed_volume(const geometry::Mesh& mesh) {
-  double sum = 0.0;
-  for (const geometry::Triangle& t : mesh.triangles) {
-    const auto at = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(t[k])]; };
-    sum += at(0).dot(at(1).cross(at(2))) / 6.0;
-  }
-  return sum;
-}
-
 double volume(const std::string& text) {
   const std::vector<TrialObject> objects = read("thing = { " + text + " }");
   EXPECT_TRUE(objects.at(0).body->closed) << text;
-  return signed_volume(objects.at(0).body->mesh);
+  return geometry::signed_volume(objects.at(0).body->mesh);
 }
 
 /// Volumes of the smooth shapes, which the meshes fall short of by their facets.
@@ -87,7 +78,7 @@ TEST(TrialObjectTest, AMeshIsReadFromBesideTheDefinition) {
   std::vector<TrialObject> objects = read("thing = { mesh = \"block.ply\" }");
   EXPECT_EQ(objects.at(0).body, nullptr);
   load_objects(objects, folder.path());
-  EXPECT_NEAR(signed_volume(objects.at(0).body->mesh), 24e-6, 1e-12);
+  EXPECT_NEAR(geometry::signed_volume(objects.at(0).body->mesh), 24e-6, 1e-12);
   objects = read("thing = { mesh = \"absent.ply\" }");
   EXPECT_THAT(test::message_of([&] { load_objects(objects, folder.path()); }),
               AllOf(HasSubstr("objects.thing: "), HasSubstr("absent.ply")));
