@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/data_set_sessions.h"
+#include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/pass_facts.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/answer_rows.h"

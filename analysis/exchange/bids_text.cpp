@@ -11,13 +11,26 @@
 #include <set>
 
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/data_set_sessions.h"
 #include "analysis/exchange/pass_facts.h"
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/table/schema.h"
+
+namespace haptrial::exchange {
+
+std::string bids_label(std::string_view text) {
+  std::string label;
+  for (const char c : text) {
+    if ((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z')) {
+      label += c;
+    }
+  }
+  return label;
+}
+
+}  // namespace haptrial::exchange
 
 namespace haptrial::exchange::bids {
 namespace {

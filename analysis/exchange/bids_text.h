@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/exchange/columns.h"
@@ -9,6 +10,13 @@
 #include "analysis/exchange/sample_text.h"
 #include "analysis/quality/channel_quality.h"
 #include "core/record/table/table_description.h"
+
+namespace haptrial::exchange {
+
+/// The letters and digits of a name, which is all that a label of the data set may have.
+std::string bids_label(std::string_view text);
+
+}  // namespace haptrial::exchange
 
 // The texts of a BIDS data set; for export_bids.cpp only.
 namespace haptrial::exchange::bids {

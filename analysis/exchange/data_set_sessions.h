@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "analysis/exchange/bids_text.h"
@@ -28,8 +27,5 @@ std::vector<ColumnDoc> fact_columns(std::span<const bids::Session> sessions);
 /// texts, say, were changed. @param folder  of the data set
 void write_definitions(const NewFolder& out, std::span<const bids::Session> sessions,
                        const std::string& folder);
-
-/// The letters and digits of a name, which is all that a label of the data set may have.
-std::string bids_label(std::string_view text);
 
 }  // namespace haptrial::exchange

@@ -9,8 +9,8 @@
 #include "protocols/psychophysics/preview/felt_forces.h"
 #include "protocols/psychophysics/preview/planned_trials.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"
-#include "protocols/psychophysics/preview/stage_words.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/preview/seen_stages.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 

@@ -12,7 +12,7 @@
 #include "experiments/preview/preview.h"
 #include "experiments/preview/space_objects.h"
 #include "protocols/interface/pass.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 

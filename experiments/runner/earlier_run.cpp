@@ -17,17 +17,16 @@ bool was_skipped(const record::Resumed& before, const record::PassRow& pass) {
   });
 }
 
-/// Whether the run ended with this trial.
-bool ended_with(const record::Resumed& before, const PlannedTrial& trial) {
-  return !before.passes.empty() && protocols::is_of(before.passes.back(), trial);
-}
-
 }  // namespace
 
 std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
                                              const PlannedTrial& trial, const record::Phase& last) {
   return protocols::recorded_outcome(
       {before.passes, before.responses, before.skipped, before.taken_back}, trial, last);
+}
+
+bool ended_with(const record::Resumed& before, const PlannedTrial& trial) {
+  return !before.passes.empty() && protocols::is_of(before.passes.back(), trial);
 }
 
 bool cut_short(const record::Resumed& before, const PlannedTrial& trial) {
@@ -59,34 +58,6 @@ std::int64_t last_time(const record::Resumed& before) {
     last = std::max(last, event.time_ns);
   }
   return last;
-}
-
-using protocols::Outcome;
-using protocols::TrialEnd;
-
-std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
-  const record::Resumed& earlier = p_.record.earlier();
-  std::optional<PlannedTrial> trial = p_.trials.next(last);
-  while (trial) {
-    const int most = p_.request.max_trials;
-    if (most > 0 && !trial->practice && trial->trial > most) {
-      return std::nullopt;
-    }
-    const auto before = outcome_of(earlier, *trial, p_.trials.phases().back());
-    const bool again = before && before->end == TrialEnd::kAborted &&
-                       (p_.trials.presents_aborted_again() || ended_with(earlier, *trial));
-    if (!before || again) {
-      return trial;
-    }
-    trial = p_.trials.next(&*before);
-    const PlannedTrial& over = before->trial;
-    const bool block_over = !trial || trial->block != over.block;
-    if (block_over && !p_.pages.after_block(over.block, over.block_name, true)) {
-      ended_at_page_ = true;
-      return std::nullopt;
-    }
-  }
-  return trial;
 }
 
 }  // namespace haptrial::experiments

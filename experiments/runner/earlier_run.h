@@ -4,9 +4,6 @@
 #include <optional>
 
 #include "core/record/recovery/session_resume.h"
-#include "experiments/runner/session.h"
-#include "experiments/runner/session_pages.h"
-#include "experiments/runner/session_record.h"
 #include "protocols/interface/trials.h"
 
 namespace haptrial::experiments {
@@ -18,6 +15,9 @@ namespace haptrial::experiments {
 std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
                                              const protocols::PlannedTrial& trial,
                                              const record::Phase& last);
+
+/// Whether the run ended with this trial.
+bool ended_with(const record::Resumed& before, const protocols::PlannedTrial& trial);
 
 /// Whether the run ended during the trial without time to write what it held.
 bool cut_short(const record::Resumed& before, const protocols::PlannedTrial& trial);
@@ -31,31 +31,5 @@ int attempts_of(const record::Resumed& before, const protocols::PlannedTrial& tr
 /// The time of the youngest record [ns]: events may be younger than the last ticks that reached
 /// the file.
 std::int64_t last_time(const record::Resumed& before);
-
-/// Which trial a session is to present next: the procedure's, without those that an earlier run
-/// recorded. Session's thread.
-class NextTrial {
- public:
-  /// All of them outlive it.
-  struct Parts {
-    const SessionRequest& request;
-    protocols::Trials& trials;
-    const SessionRecord& record;
-    SessionPages& pages;
-  };
-  explicit NextTrial(const Parts& parts) : p_(parts) {}
-
-  /// The next trial that is not recorded. The outcome of a recorded one goes into the same
-  /// procedure, which leads to the same trials. Pages that the earlier run left unanswered are
-  /// asked on the way.
-  /// @param last  what came of the trial before; null at first
-  /// @returns nothing at the end of the session, and where it was ended at a page
-  std::optional<protocols::PlannedTrial> after(const protocols::Outcome* last);
-  bool ended_at_page() const { return ended_at_page_; }
-
- private:
-  Parts p_;
-  bool ended_at_page_{false};
-};
 
 }  // namespace haptrial::experiments

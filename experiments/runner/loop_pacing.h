@@ -11,8 +11,8 @@
 #include "core/realtime/servo_loop.h"
 #include "experiments/control/session_controller.h"
 #include "experiments/runner/servo_thread.h"
-#include "experiments/runner/session.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
 #include "protocols/interface/rig.h"
 #include "protocols/interface/session_task.h"
 

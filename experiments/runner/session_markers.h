@@ -14,9 +14,9 @@
 #include "core/stream/marker_thread.h"
 #include "core/stream/marker_times.h"
 #include "core/stream/neon_events.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
-#include "protocols/definition/screen_options.h"
+#include "protocols/definition/speech_options.h"
 
 namespace haptrial::experiments {
 

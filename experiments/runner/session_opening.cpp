@@ -19,7 +19,7 @@
 #include "experiments/control/signals.h"
 #include "experiments/runner/version.h"
 #include "experiments/screen/frame_pacing.h"
-#include "protocols/definition/screen_options.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {

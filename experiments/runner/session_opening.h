@@ -15,7 +15,7 @@
 #include "core/record/rows/live_figures.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/runner/participant_input.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 #include "experiments/screen/screen.h"
 #include "experiments/screen/speech_library.h"
 #include "protocols/interface/trials.h"

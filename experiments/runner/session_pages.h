@@ -9,8 +9,8 @@
 #include "experiments/control/session_controller.h"
 #include "experiments/runner/loop_pacing.h"
 #include "experiments/runner/page_input.h"
-#include "experiments/runner/session.h"
 #include "experiments/runner/session_record.h"
+#include "experiments/runner/session_request.h"
 
 namespace haptrial::experiments {
 

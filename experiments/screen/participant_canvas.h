@@ -11,7 +11,7 @@
 #include "core/render/flat/trial_display.h"
 #include "experiments/screen/frame_pacing.h"
 #include "experiments/screen/pad_pointer.h"
-#include "experiments/screen/screen.h"
+#include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 

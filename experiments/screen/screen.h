@@ -18,16 +18,11 @@
 #include "core/stream/onset_log.h"
 #include "experiments/control/session_control.h"
 #include "experiments/screen/pad_pointer.h"
+#include "experiments/screen/session_mark.h"
 #include "protocols/definition/screen_options.h"
 #include "protocols/interface/drawing.h"
 
 namespace haptrial::experiments {
-
-/// A mark over every picture of a session.
-struct SessionMark {
-  std::string words;   // in the upper left corner; empty: none
-  bool framed{false};  // in orange: the session does not count
-};
 
 class Speaker;
 

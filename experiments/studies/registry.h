@@ -1,11 +1,9 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/base/error.h"
 #include "experiments/studies/study.h"
 
 namespace haptrial {
@@ -38,22 +36,5 @@ const Study& study_of(Table& root);
 /// The same from the definition that a session file keeps.
 const Study& study_of(const record::SessionInfo& session);
 const protocols::Protocol& protocol_of(const record::SessionInfo& session);
-
-/// @param sessions  a session file, or a folder of them; files that are no sessions are passed over
-/// @throws InputError for the first session whose definition this program cannot read, as when the
-///         program of a lab recorded it with kinds of its own; the sentence names the missing kind
-void check_recorded_kinds(const std::filesystem::path& sessions);
-
-/// Returns what action() returns. If it refuses the sessions and kinds of their definitions are
-/// missing, the sentence says which.
-template <class Action>
-auto with_recorded_kinds(const std::filesystem::path& sessions, Action action) {
-  try {
-    return action();
-  } catch (const InputError&) {
-    check_recorded_kinds(sessions);
-    throw;
-  }
-}
 
 }  // namespace haptrial::experiments

@@ -11,11 +11,6 @@ template <class T>
 class Schema;
 }
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
-
 namespace haptrial::protocols {
 
 /// When the square for a photodiode is white; otherwise it is black.
@@ -71,21 +66,5 @@ const Schema<SessionTexts>& text_schema();
 
 /// A page of a text. @param hint  how to go on; empty where nobody is asked to
 render::TextPage page_of(const std::string& text, const std::string& hint = "");
-
-struct Definition;
-
-/// Speech of what the participant's window shows.
-struct SpeechOptions {
-  bool spoken{false};
-  std::string voice{"en"};         // of espeak-ng
-  std::string seconds{"seconds"};  // the word, in the voice's language
-  std::string card{"default"};     // ALSA's name of the sound card
-};
-
-/// The keys of [display].
-const Schema<SpeechOptions>& speech_schema();
-
-/// The speech that a definition asks for, in the language of its texts.
-SpeechOptions speech_of(const Definition& definition);
 
 }  // namespace haptrial::protocols

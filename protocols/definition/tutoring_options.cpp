@@ -9,7 +9,7 @@
 #include "core/base/definition/table_vector.h"
 #include "core/device/device.h"
 #include "core/record/table/schema.h"
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 

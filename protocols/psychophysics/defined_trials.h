@@ -16,7 +16,7 @@
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 #include "protocols/psychophysics/session_scripts.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::protocols {
 

@@ -8,7 +8,7 @@
 #include "core/record/rows/trial_rows.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::protocols {
 

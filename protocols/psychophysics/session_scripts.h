@@ -8,7 +8,7 @@
 #include "protocols/psychophysics/sequence/scripted_decisions.h"
 #include "protocols/psychophysics/sequence/scripted_levels.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::protocols {
 

@@ -1,7 +1,5 @@
 #include "protocols/psychophysics/trials_protocol.h"
 
-#include <fmt/format.h>
-
 #include "core/base/error.h"
 #include "core/record/rows/answer_rows.h"
 #include "core/record/rows/object_rows.h"
@@ -91,19 +89,6 @@ class TrialsProtocol final : public Protocol {
 const Protocol& trials_protocol() {
   static const TrialsProtocol protocol;
   return protocol;
-}
-
-std::vector<std::string> StudiedDefinition::description() const {
-  std::vector<std::string> lines = TrialsDefinition::description();
-  if (observer.script) {
-    lines.push_back(fmt::format("virtual participants answer by {} (observer.script)",
-                                observer.script->file.filename().string()));
-  }
-  return lines;
-}
-
-std::string StudiedDefinition::scripts() const {
-  return (script ? script->text : "") + (observer.script ? observer.script->text : "");
 }
 
 }  // namespace haptrial::protocols

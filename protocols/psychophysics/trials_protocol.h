@@ -1,23 +1,10 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "protocols/interface/protocol.h"
-#include "protocols/psychophysics/definition/read_definition.h"
-#include "protocols/psychophysics/subject/observer_plan.h"
 
 namespace haptrial::protocols {
 
 /// Experiments that a definition states whole: perception, magnitudes, movements.
 const Protocol& trials_protocol();
-
-/// A definition of trials with those who stand in for people.
-struct StudiedDefinition final : TrialsDefinition {
-  ObserverPlan observer;
-
-  std::vector<std::string> description() const override;
-  std::string scripts() const override;
-};
 
 }  // namespace haptrial::protocols

@@ -12,7 +12,7 @@
 #include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"

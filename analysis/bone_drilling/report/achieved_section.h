@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/bone_drilling/report/validity_findings.h"
+#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/document.h"
 
 namespace haptrial::analysis::drilling {

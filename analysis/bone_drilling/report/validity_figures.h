@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "analysis/bone_drilling/report/validity_findings.h"
+#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure.h"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/bone_drilling/report/validity_findings.h"
+#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/finding.h"
 
 namespace haptrial::analysis::drilling {

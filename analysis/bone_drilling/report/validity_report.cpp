@@ -10,6 +10,7 @@
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
+#include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/bone_drilling/report/validity_words.h"
 #include "analysis/learning/learned_study.h"
 #include "analysis/statistics/design/wording.h"

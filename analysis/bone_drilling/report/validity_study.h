@@ -7,7 +7,7 @@
 
 #include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/metrics/procedure.h"
-#include "analysis/bone_drilling/report/validity_findings.h"
+#include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/finding.h"
 
 namespace haptrial::record {

@@ -38,7 +38,4 @@ std::vector<const GroupValues*> shown_groups(const Validity& v);
 std::size_t contrasts_of(const Validity& v);
 std::size_t relations_of(const Validity& v);
 
-/// The results in a few lines, for the command and the head of the report.
-std::vector<std::string> summary_lines(const ValidityResult& result);
-
 }  // namespace haptrial::analysis::drilling

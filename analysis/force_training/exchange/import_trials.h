@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/force_training/exchange/import_curves.h"
+#include "analysis/force_training/exchange/curve_study.h"
 #include "analysis/force_training/score/curve_csv.h"
 #include "analysis/force_training/score/trial_score.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "analysis/force_training/score/scores_csv.h"
-#include "analysis/force_training/study/identity.h"
+#include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/statistics/base/p_adjust.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"

@@ -6,7 +6,7 @@
 
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/force_training/report/recall_frequency_findings.h"
-#include "analysis/force_training/study/identity.h"
+#include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/quality_summary.h"
 #include "analysis/learning/learning_json_internal.h"
 #include "analysis/statistics/design/result_json_internal.h"

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,10 +26,5 @@ std::vector<Identity> identities(const StudyResult& study);
 /// seeds: 1 and 2"; empty when they are. Populations are compared in the tables that both have:
 /// only a study at the participants' own pace has [pace].
 std::string why_another(const Identity& first, const Identity& second);
-
-/// Identities as statistics.json has them.
-nlohmann::ordered_json to_json(const std::vector<Identity>& identities);
-/// @throws nlohmann::json::exception for what to_json() does not write.
-std::vector<Identity> identities_from(const nlohmann::ordered_json& json);
 
 }  // namespace haptrial::analysis

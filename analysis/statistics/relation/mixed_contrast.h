@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "analysis/statistics/base/defined.h"
-#include "analysis/statistics/relation/mixed_model.h"
+#include "analysis/statistics/relation/fitted_mixed_model.h"
 
 namespace haptrial::analysis {
 

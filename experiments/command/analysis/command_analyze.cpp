@@ -14,6 +14,7 @@
 #include "experiments/command/subcommand.h"
 #include "experiments/plan/audit/stated_and_done.h"
 #include "experiments/plan/audit/study_methods.h"
+#include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 #include "experiments/study/study_files.h"
 

@@ -12,6 +12,7 @@
 #include "experiments/control/progress.h"
 #include "experiments/control/signals.h"
 #include "experiments/screen/video.h"
+#include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
 
 namespace haptrial::experiments {

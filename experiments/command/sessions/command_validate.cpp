@@ -15,7 +15,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/registry.h"
 #include "protocols/definition/languages.h"
-#include "protocols/definition/screen_options.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/interface/protocol.h"
 #include "protocols/interface/study_rules.h"
 #include "protocols/psychophysics/definition/every_value.h"

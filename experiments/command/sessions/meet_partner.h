@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "experiments/command/sessions/run_options.h"
-#include "experiments/runner/session.h"
+#include "experiments/runner/session_request.h"
 
 namespace haptrial::experiments {
 

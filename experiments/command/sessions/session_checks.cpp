@@ -21,7 +21,7 @@
 #include "core/record/rows/common_tables.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/sessions/run_checks.h"
-#include "experiments/command/start/machine_checks.h"
+#include "experiments/command/start/doctor_checks.h"
 #include "experiments/runner/devices.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_times.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "experiments/command/start/examples.h"
-#include "experiments/command/start/machine_checks.h"
+#include "experiments/command/start/doctor_checks.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
 

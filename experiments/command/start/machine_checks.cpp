@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
@@ -18,9 +16,7 @@
 #include "core/render/gl/window.h"
 #include "core/sound/card_player.h"
 #include "core/stream/lsl_outlet.h"
-#include "experiments/command/start/touch_checks.h"
 #include "experiments/screen/video.h"
-#include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -51,6 +47,38 @@ MachineCheck ready_unless(const char* what, const std::string& refusal, State ot
                           const char* ready) {
   return refusal.empty() ? MachineCheck{what, State::kReady, ready}
                          : MachineCheck{what, otherwise, refusal};
+}
+
+}  // namespace
+
+const char* name_of(MachineCheck::State state) {
+  switch (state) {
+    case State::kReady:
+      return "ready";
+    case State::kLimited:
+      return "limited";
+    case State::kAbsent:
+      return "absent";
+    case State::kUnused:
+      return "unused";
+    case State::kBroken:
+      break;
+  }
+  return "BROKEN";
+}
+
+MachineCheck check_clock(double seconds, double rate) {
+  realtime::ServoLoop loop(realtime::ClockKind::kReal, rate);
+  CountedTicks task(seconds * rate);
+  loop.run(task);
+  const realtime::LoopTiming& timing = loop.timing();
+  const bool good = loop.overruns() == 0;
+  return {"clock", good ? State::kReady : State::kLimited,
+          fmt::format("{} ticks at {:g} kHz on {} processors: 99.9 % at most {:.0f} µs late, the "
+                      "latest {:.0f} µs, {} overruns{}",
+                      loop.ticks(), 1e-3 * rate, std::thread::hardware_concurrency(),
+                      1e-3 * timing.lateness.percentile(99.9), 1e-3 * timing.lateness.max(),
+                      loop.overruns(), good ? "" : "; close other programs and try again")};
 }
 
 MachineCheck check_real_time() {
@@ -92,38 +120,6 @@ MachineCheck check_stream() {
   return ready_unless("stream", refusal, State::kLimited, "the Lab Streaming Layer is there");
 }
 
-}  // namespace
-
-const char* name_of(MachineCheck::State state) {
-  switch (state) {
-    case State::kReady:
-      return "ready";
-    case State::kLimited:
-      return "limited";
-    case State::kAbsent:
-      return "absent";
-    case State::kUnused:
-      return "unused";
-    case State::kBroken:
-      break;
-  }
-  return "BROKEN";
-}
-
-MachineCheck check_clock(double seconds, double rate) {
-  realtime::ServoLoop loop(realtime::ClockKind::kReal, rate);
-  CountedTicks task(seconds * rate);
-  loop.run(task);
-  const realtime::LoopTiming& timing = loop.timing();
-  const bool good = loop.overruns() == 0;
-  return {"clock", good ? State::kReady : State::kLimited,
-          fmt::format("{} ticks at {:g} kHz on {} processors: 99.9 % at most {:.0f} µs late, the "
-                      "latest {:.0f} µs, {} overruns{}",
-                      loop.ticks(), 1e-3 * rate, std::thread::hardware_concurrency(),
-                      1e-3 * timing.lateness.percentile(99.9), 1e-3 * timing.lateness.max(),
-                      loop.overruns(), good ? "" : "; close other programs and try again")};
-}
-
 std::vector<MachineCheck> check_devices() {
   std::vector<MachineCheck> checks;
   for (const device::DeviceListing& listing : device::list_devices()) {
@@ -148,49 +144,6 @@ MachineCheck check_disk(const std::filesystem::path& folder) {
   return {"disk", free < kLittle ? State::kLimited : State::kReady,
           fmt::format("{} can be written; {:.1f} GB are free",
                       std::filesystem::weakly_canonical(folder).string(), free)};
-}
-
-namespace {
-
-constexpr double kClockSeconds = 2.0;
-constexpr double kUsualRate = 1000.0;  // [Hz]
-
-/// Marks what sessions of a definition do without.
-void mark_unused(const protocols::Definition& definition, std::vector<MachineCheck>& checks) {
-  for (MachineCheck& check : checks) {
-    const bool sound = check.what == "sound" && !definition.is_heard();
-    const bool beside = check.what == "video" || check.what == "stream";  // asked for by options
-    if ((sound || beside) && check.state != MachineCheck::State::kReady) {
-      check.state = MachineCheck::State::kUnused;
-    }
-  }
-}
-
-}  // namespace
-
-std::vector<MachineCheck> doctor_checks(const protocols::Definition* definition,
-                                        const std::filesystem::path& folder) {
-  const double rate = definition != nullptr ? definition->rate : kUsualRate;
-  std::vector<MachineCheck> checks{check_clock(kClockSeconds, rate),
-                                   check_real_time(),
-                                   check_off_screen(),
-                                   check_window(),
-                                   check_sound(),
-                                   check_video(),
-                                   check_stream(),
-                                   check_disk(folder)};
-  for (MachineCheck& device : check_devices()) {
-    checks.push_back(std::move(device));
-  }
-  const TouchSearch here = this_machine(
-      definition != nullptr ? std::optional(definition->vendor.open_haptics.name) : std::nullopt);
-  for (MachineCheck& touch : check_touch(here)) {
-    checks.push_back(std::move(touch));
-  }
-  if (definition != nullptr) {
-    mark_unused(*definition, checks);
-  }
-  return checks;
 }
 
 }  // namespace haptrial::experiments

@@ -4,10 +4,6 @@
 #include <string>
 #include <vector>
 
-namespace haptrial::protocols {
-struct Definition;
-}
-
 namespace haptrial::experiments {
 
 /// Something that a session needs, or that it can do without.
@@ -30,17 +26,15 @@ const char* name_of(MachineCheck::State state);
 /// Some seconds of the servo loop, by an otherwise idle program: how late its ticks are.
 /// @param rate  of its ticks [Hz]
 MachineCheck check_clock(double seconds, double rate);
+MachineCheck check_real_time();
+MachineCheck check_off_screen();
+MachineCheck check_window();
+MachineCheck check_sound();
+MachineCheck check_video();
+MachineCheck check_stream();
 /// Every device that the program knows.
 std::vector<MachineCheck> check_devices();
 /// Whether files can be written, and how much there is room for. @param folder  that is there
 MachineCheck check_disk(const std::filesystem::path& folder);
-
-/// The checks of `doctor`, in a fixed order: clock, real time, pictures, window, sound, video,
-/// stream, disk, every device, a Touch. They take some seconds.
-/// @param definition  whose sessions are to run here; null: any. Checks of what its sessions do
-///                    without are kUnused
-/// @param folder      for session files; is there
-std::vector<MachineCheck> doctor_checks(const protocols::Definition* definition,
-                                        const std::filesystem::path& folder);
 
 }  // namespace haptrial::experiments

@@ -15,9 +15,9 @@
 #include "core/base/whole_file.h"
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/learn_score.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/study/roster.h"
 

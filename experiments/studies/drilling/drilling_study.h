@@ -5,9 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/report/validity_study.h"
 #include "analysis/learning/learning_plan.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/studies/study.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
@@ -16,16 +16,7 @@ namespace haptrial {
 class Table;
 }
 
-namespace haptrial::protocols {
-struct BoneDefinition;
-}
-
 namespace haptrial::experiments {
-
-/// Facts of a definition for metrics; the group is empty.
-analysis::drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition);
-/// The same from the definition in a session file.
-analysis::drilling::ProcedureSetup procedure_setup(const record::SessionReader& session);
 
 /// The name of the ratings within a study's folder.
 inline constexpr const char* kRatingsFile = "ratings.csv";

@@ -9,7 +9,7 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/studies/drilling/drilling_study.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_definitions.h"
 #include "experiments/study/study_files.h"
 #include "experiments/study/study_run.h"

@@ -19,10 +19,10 @@
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/drilling_curriculum.h"
-#include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/learn_phases.h"
 #include "experiments/studies/drilling/learn_score.h"
+#include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/study/study_run.h"
 
 namespace haptrial::experiments {

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "analysis/document/document.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 

@@ -8,7 +8,7 @@
 #include "analysis/psychophysics/fit/trials_plan.h"
 #include "core/base/definition/table.h"
 #include "experiments/studies/study.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::experiments {
 

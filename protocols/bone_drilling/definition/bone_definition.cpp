@@ -352,4 +352,13 @@ bone::CompanionParameters companions_for(const BoneDefinition& d, const geometry
   return p;
 }
 
+double smallest_burr(const BoneDefinition& d) {
+  double radius = 1.0;
+  for (const bone::ToolSpec& tool : d.simulator.tools) {
+    const auto* burr = tool.as<bone::BurrTool>();
+    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
+  }
+  return radius;
+}
+
 }  // namespace haptrial::protocols

@@ -191,4 +191,7 @@ bone::SimulatorParameters simulator_for(const BoneDefinition& definition,
 bone::CompanionParameters companions_for(const BoneDefinition& definition,
                                          const geometry::VoxelGrid& grid);
 
+/// The radius of the smallest burr of a definition; 1 m without any. [m]
+double smallest_burr(const BoneDefinition& definition);
+
 }  // namespace haptrial::protocols

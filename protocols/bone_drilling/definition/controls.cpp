@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/base/definition/schema.h"
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 

@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 #include "core/bone/data/ear_side.h"
 #include "core/subject/drilling/cavity_chart.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -128,15 +125,6 @@ void check_placement(const BonePlacement& placement, const bone::BoneModel& bone
                     "outwards",
                     named(bone)));
   }
-}
-
-double smallest_burr(const BoneDefinition& d) {
-  double radius = 1.0;
-  for (const bone::ToolSpec& tool : d.simulator.tools) {
-    const auto* burr = tool.as<bone::BurrTool>();
-    radius = burr != nullptr ? std::min(radius, burr->radius()) : radius;
-  }
-  return radius;
 }
 
 }  // namespace haptrial::protocols

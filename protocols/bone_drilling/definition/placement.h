@@ -35,9 +35,4 @@ const Schema<BonePlacement>& placement_schema();
 void check_placement(const BonePlacement& placement, const bone::BoneModel& bone,
                      const Camera& camera, const subject::CavityParameters* cavity);
 
-struct BoneDefinition;
-
-/// The radius of the smallest burr of a definition; 1 m without any. [m]
-double smallest_burr(const BoneDefinition& definition);
-
 }  // namespace haptrial::protocols

@@ -13,7 +13,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/nearest.h"
 #include "protocols/definition/definition.h"
-#include "protocols/definition/screen_options.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/psychophysics/definition/question.h"
 
 namespace haptrial::protocols {

@@ -11,7 +11,7 @@
 #include "core/scene/read/read_field.h"
 #include "core/scene/read/read_rigid.h"
 #include "core/sound/read_cues.h"
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 #include "protocols/psychophysics/definition/trial_devices.h"
 
 namespace haptrial::protocols {

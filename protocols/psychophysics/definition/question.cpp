@@ -12,7 +12,7 @@
 #include "core/base/error.h"
 #include "core/questions/question_kinds.h"
 #include "core/record/rows/answer_rows.h"
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::protocols {
 namespace {

@@ -11,7 +11,7 @@
 #include "protocols/psychophysics/presentation/trial_pass.h"
 #include "protocols/psychophysics/preview/stage_words.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
-#include "protocols/psychophysics/trials_protocol.h"
+#include "protocols/psychophysics/studied_definition.h"
 
 namespace haptrial::protocols {
 

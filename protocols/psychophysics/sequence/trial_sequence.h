@@ -11,7 +11,7 @@
 #include "protocols/interface/trials.h"
 #include "protocols/psychophysics/definition/trial_values.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
-#include "protocols/psychophysics/sequence/scripted_levels.h"
+#include "protocols/psychophysics/sequence/level_chooser.h"
 
 namespace haptrial::protocols {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/exchange/data_set_sessions.h"
+#include "analysis/exchange/bids_text.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/channel/channel_row.h"

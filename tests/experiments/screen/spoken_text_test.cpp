@@ -15,7 +15,7 @@
 #include "experiments/screen/speech_library.h"
 #include "experiments/studies/experiment.h"
 #include "protocols/definition/languages.h"
-#include "protocols/definition/screen_options.h"
+#include "protocols/definition/speech_options.h"
 #include "protocols/psychophysics/presentation/trial_page.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 #include "tests/experiments/shipped.h"

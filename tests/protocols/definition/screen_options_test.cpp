@@ -5,7 +5,7 @@
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -14,7 +14,7 @@
 #include "analysis/bone_drilling/report/validity_json.h"
 #include "analysis/bone_drilling/report/validity_report.h"
 #include "analysis/bone_drilling/report/validity_table.h"
-#include "analysis/bone_drilling/report/validity_words.h"
+#include "analysis/bone_drilling/report/validity_summary.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/base/random.h"

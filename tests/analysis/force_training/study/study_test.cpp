@@ -13,7 +13,7 @@
 #include "analysis/force_training/report/study_json.h"
 #include "analysis/force_training/score/score.h"
 #include "analysis/force_training/score/scores_csv.h"
-#include "analysis/force_training/study/identity.h"
+#include "analysis/force_training/study/identity_json_internal.h"
 #include "analysis/force_training/study/study.h"
 #include "analysis/force_training/study/study_result.h"
 #include "core/base/error.h"

@@ -4,7 +4,7 @@
 
 #include <bit>
 
-#include "protocols/definition/button_uses.h"
+#include "protocols/definition/window_keys.h"
 #include "protocols/psychophysics/definition/every_value.h"
 #include "tests/protocols/psychophysics/definition/small_definition.h"
 #include "tests/support/replaced.h"

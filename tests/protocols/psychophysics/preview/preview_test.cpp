@@ -19,7 +19,7 @@
 #include "protocols/psychophysics/preview/felt_forces.h"
 #include "protocols/psychophysics/preview/planned_trials.h"
 #include "protocols/psychophysics/preview/previewed_trial.h"
-#include "protocols/psychophysics/preview/stage_words.h"
+#include "protocols/psychophysics/preview/seen_stages.h"
 #include "protocols/psychophysics/subject/trials_rig.h"
 #include "protocols/psychophysics/trials_protocol.h"
 

@@ -12,6 +12,7 @@
 #include "protocols/psychophysics/presentation/trial_view.h"
 #include "protocols/psychophysics/subject/decider.h"
 #include "protocols/psychophysics/subject/trials_rig.h"
+#include "protocols/psychophysics/studied_definition.h"
 #include "protocols/psychophysics/trials_protocol.h"
 #include "tests/support/allocation_guard.h"
 #include "tests/support/felt_or_not.h"

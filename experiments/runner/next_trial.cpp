@@ -1,0 +1,36 @@
+#include "experiments/runner/next_trial.h"
+
+#include "experiments/runner/earlier_run.h"
+
+namespace haptrial::experiments {
+
+using protocols::Outcome;
+using protocols::PlannedTrial;
+using protocols::TrialEnd;
+
+std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
+  const record::Resumed& earlier = p_.record.earlier();
+  std::optional<PlannedTrial> trial = p_.trials.next(last);
+  while (trial) {
+    const int most = p_.request.max_trials;
+    if (most > 0 && !trial->practice && trial->trial > most) {
+      return std::nullopt;
+    }
+    const auto before = outcome_of(earlier, *trial, p_.trials.phases().back());
+    const bool again = before && before->end == TrialEnd::kAborted &&
+                       (p_.trials.presents_aborted_again() || ended_with(earlier, *trial));
+    if (!before || again) {
+      return trial;
+    }
+    trial = p_.trials.next(&*before);
+    const PlannedTrial& over = before->trial;
+    const bool block_over = !trial || trial->block != over.block;
+    if (block_over && !p_.pages.after_block(over.block, over.block_name, true)) {
+      ended_at_page_ = true;
+      return std::nullopt;
+    }
+  }
+  return trial;
+}
+
+}  // namespace haptrial::experiments
