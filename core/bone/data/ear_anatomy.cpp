@@ -194,10 +194,10 @@ EarAnatomy::Material EarAnatomy::jaw(const Point& p) const {
   return {Anatomy::kJaw, condyle > -1.2 ? 0.9 : 0.45};
 }
 
-bool EarAnatomy::air_cell(const Point& p, double depth, double middle) const {
+bool EarAnatomy::air_cell(const Point& p, double depth, double inside, double middle) const {
   constexpr double kCortex = 1.8;
   constexpr double kPlate = 1.0;  // over dura, sinus and the canal
-  if (depth > -kCortex || cranium(p) < kPlate || sinus(p) < kPlate || ear_canal(p) < 1.2 ||
+  if (depth > -kCortex || inside < kPlate || sinus(p) < kPlate || ear_canal(p) < 1.2 ||
       internal_canal_.distance(p) < 1.5) {
     return false;
   }
@@ -234,9 +234,10 @@ bool EarAnatomy::walled(const Point& p) const {
 
 EarAnatomy::Material EarAnatomy::at(const Point& p) const {
   constexpr double kDura = 2.5;  // what is kept of the inside of the skull
-  const double depth = hull(p);
-  const double inside = cranium(p);
-  const double border = outline(p);  // what lies beyond belongs to other bones
+  const Surfaces surface = surfaces(p);
+  const double depth = hull(p, surface);
+  const double inside = cranium(p, surface);
+  const double border = surface.outline;  // what lies beyond belongs to other bones
   if (depth > 6.0 && inside > 6.0 && sinus(p) > 0.0) {
     const Material condyle = jaw(p);
     if (condyle.label != Anatomy::kNothing) {
@@ -290,7 +291,7 @@ EarAnatomy::Material EarAnatomy::at(const Point& p) const {
     }
     return walled(p) ? Material{Anatomy::kBone, 1.0} : Material{};
   }
-  if (air_cell(p, depth, middle)) {
+  if (air_cell(p, depth, inside, middle)) {
     return {};
   }
   const double cortex = std::min({-depth, inside, middle + 0.5});

@@ -52,26 +52,35 @@ class EarAnatomy {
     Tube worm;
     double wall;  // bone around it that cells leave alone
   };
+  /// Surfaces at a place that several shapes share.
+  struct Surfaces {
+    double outer;    // side of the skull; below 0 inwards
+    double inner;    // of its inside, likewise
+    double outline;  // of the bone as the side shows it; below 0 within
+    double tegmen;   // z of the floor of the middle fossa
+    double behind;   // the back of the petrous bone; below 0 behind it
+  };
+  Surfaces surfaces(const Point& p) const;
   void add_nerves(double least);
   void add_labyrinth(double least);
   void add_ossicles(double least);
   void add_vessels(double least);
 
-  double outer_side(const Point& p) const;   // of the skull; below 0 inwards
-  double outline(const Point& p) const;      // of the bone as the side shows it; below 0 within
-  double wall(const Point& p) const;         // its thickness
-  double tegmen(const Point& p) const;       // z of the floor of the middle fossa
-  double behind(const Point& p) const;       // the back of the petrous bone; below 0 behind it
-  double fossa_floor(const Point& p) const;  // z of the floor of the posterior fossa
-  double hull(const Point& p) const;         // the bone without anything cut out
-  double cranium(const Point& p) const;      // the space inside the skull
+  double outer_side(const Point& p) const;
+  double outline(const Point& p) const;
+  double wall(const Point& p) const;  // thickness of the skull
+  double tegmen(const Point& p) const;
+  double behind(const Point& p) const;
+  double fossa_floor(const Point& p) const;                 // z of the floor of the posterior fossa
+  double hull(const Point& p, const Surfaces& s) const;     // the bone without anything cut out
+  double cranium(const Point& p, const Surfaces& s) const;  // the space inside the skull
   double sinus(const Point& p) const;
   double ear_canal(const Point& p) const;
   double drum(const Point& p) const;  // below 0 on the canal's side of the ear drum
   double niche(const Point& p) const;
   double middle_ear(const Point& p) const;
   bool walled(const Point& p) const;
-  bool air_cell(const Point& p, double depth, double middle) const;
+  bool air_cell(const Point& p, double depth, double inside, double middle) const;
   Material jaw(const Point& p) const;
   Material lining(const Point& p, double canal) const;
 

@@ -72,9 +72,14 @@ double EarAnatomy::fossa_floor(const Point& p) const {
   return 10.0 + 0.3 * std::max(0.0, 40.0 - p.y());
 }
 
-double EarAnatomy::hull(const Point& p) const {
-  const double uneven = 0.3 * noise(v_.noise + 7, p / 6.0);
+EarAnatomy::Surfaces EarAnatomy::surfaces(const Point& p) const {
   const double outer = outer_side(p);
+  return {outer, outer + wall(p), outline(p), tegmen(p), behind(p)};
+}
+
+double EarAnatomy::hull(const Point& p, const Surfaces& s) const {
+  const double uneven = 0.3 * noise(v_.noise + 7, p / 6.0);
+  const double outer = s.outer;
   const double squama =
       smooth_intersection(std::max(outer, -outer - wall(p) - 0.8), 22.0 - p.z(), 8.0);
   const Point tip(14.2, 34.6, 5.0 - v_.mastoid_tip);
@@ -82,15 +87,15 @@ double EarAnatomy::hull(const Point& p) const {
       smooth_union(round_cone(p, {13.0, 36.0, 24.0}, tip, 12.0, 5.8),
                    round_cone(p, {13.5, 43.0, 25.0}, {13.5, 41.0, 11.0}, 12.0, 7.0), 4.0),
       round_cone(p, {11.0, 50.0, 30.0}, {12.5, 47.0, 11.0}, 11.0, 7.0), 4.0);
-  const double border = outline(p);
+  const double border = s.outline;
   double bone = smooth_union(squama, smooth_intersection(mastoid, outer - 0.2, 5.0), 5.0);
   bone = smooth_intersection(bone, border, 3.0);
   const double petrous =
       smooth_intersection(round_cone(p, {20.0, 31.0, 24.5}, {52.0, 16.0, 26.0}, 12.5, 9.0),
                           0.9 * (p.x() - 47.0) - 0.43 * (p.y() - 20.0), 8.0);
   bone = smooth_union(bone, std::max(petrous, outer), 2.5);
-  const double roof = tegmen(p) - p.z();
-  const double front = -behind(p);
+  const double roof = s.tegmen - p.z();
+  const double front = -s.behind;
   const double floor_of_middle =
       std::max({-roof - 0.8, roof - 2.4, front, outer + 2.5, border, p.x() - 38.0 + 0.6 * p.y()});
   bone = smooth_union(bone, floor_of_middle, 2.0);
@@ -119,10 +124,9 @@ double EarAnatomy::hull(const Point& p) const {
   return bone + uneven;
 }
 
-double EarAnatomy::cranium(const Point& p) const {
-  const double inner = outer_side(p) + wall(p);
-  const double above = std::max(tegmen(p) - p.z(), inner);
-  const double posterior = std::max({behind(p), fossa_floor(p) - p.z(), inner});
+double EarAnatomy::cranium(const Point& p, const Surfaces& s) const {
+  const double above = std::max(s.tegmen - p.z(), s.inner);
+  const double posterior = std::max({s.behind, fossa_floor(p) - p.z(), s.inner});
   return smooth_union(above, posterior, 2.0);
 }
 
