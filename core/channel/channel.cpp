@@ -109,7 +109,7 @@ void Channel::show(bool live) {
   seen_ = state_;
 }
 
-void Channel::take(const Measured& sample) {
+void Channel::take(const InstrumentSample& sample) {
   ChannelRow row;
   row.received_ns = now_();
   arrived_ns_ = row.received_ns;
@@ -152,7 +152,7 @@ void Channel::take(const Measured& sample) {
 
 /// The time by the instrument's clock. A clock that steps again and again tells no time: one that
 /// runs too fast steps with every sample, one that runs too slow about twice a second.
-SampleTime Channel::clocked(const Measured& sample, std::int64_t received_ns) {
+SampleTime Channel::clocked(const InstrumentSample& sample, std::int64_t received_ns) {
   const SampleTime time = clock_.time_of(sample.device_time, received_ns, sample.waited);
   if (time.step == 0.0) {
     steps_ = received_ns - stepped_ns_ > kSoon ? 0 : steps_;

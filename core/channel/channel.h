@@ -69,7 +69,7 @@ class Channel final : private ChannelInbox {
   std::vector<IncidentRow> take_incidents();
 
  private:
-  void take(const Measured& sample) override;
+  void take(const InstrumentSample& sample) override;
   void note(Incident what, double amount, const std::string& text,
             std::optional<std::int64_t> time_ns) override;
   void note(Incident what, double amount = 0.0, const std::string& text = "") {
@@ -80,7 +80,7 @@ class Channel final : private ChannelInbox {
   bool open();
   void read();
   bool is_useful(std::span<const double> values) const;
-  SampleTime clocked(const Measured& sample, std::int64_t received_ns);
+  SampleTime clocked(const InstrumentSample& sample, std::int64_t received_ns);
   double time_since(std::int64_t time_ns) const;
   void compare_with_limit(std::span<const double> values);
   void lose(const std::string& why);

@@ -13,7 +13,7 @@
 namespace haptrial::channel {
 
 /// One sample as an instrument gave it.
-struct Measured {
+struct InstrumentSample {
   std::span<const double> values;  // in the order of the channel's quantities; NaN: not measured
   /// When it was measured, by the instrument's own clock; NaN: it has none [s]
   double device_time{std::numeric_limits<double>::quiet_NaN()};
@@ -29,7 +29,7 @@ class ChannelInbox {
  public:
   virtual ~ChannelInbox() = default;
   /// A sample that has come just now.
-  virtual void take(const Measured& sample) = 0;
+  virtual void take(const InstrumentSample& sample) = 0;
   /// @param time_ns  when it happened, since the session's first tick; nothing: just now
   virtual void note(Incident what, double amount = 0.0, const std::string& text = "",
                     std::optional<std::int64_t> time_ns = {}) = 0;

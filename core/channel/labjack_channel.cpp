@@ -273,7 +273,7 @@ class LabJackSource final : public ChannelSource {
     note_absent(into, absent);
     // The reading lies between request and answer: half of that before now, and as far to each
     // side.
-    Measured sample{values_};
+    InstrumentSample sample{values_};
     sample.waited = 1e-9 * static_cast<double>(into.now() - asked_ns_);
     into.take(sample);
   }

@@ -391,7 +391,7 @@ class LineSource final : public ChannelSource {
       note_malformed(line);
       return;
     }
-    Measured sample;
+    InstrumentSample sample;
     if (options_.clock) {
       if (line == last_line_) {
         into.note(Incident::kRepeated, 1.0);

@@ -357,7 +357,7 @@ class LslSource final : public ChannelSource {
     time.time_ns = std::llround(1e9 * session);
     time.uncertainty = uncertainty_ + bridge.uncertainty + kHostDrift * std::abs(stamp - remote_);
     if (!text_) {
-      Measured sample;
+      InstrumentSample sample;
       sample.values = values_;
       sample.device_time = stamp;
       sample.time = time;

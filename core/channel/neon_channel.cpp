@@ -232,7 +232,7 @@ class NeonSource final : public ChannelSource {
     }
     const PhoneState& numbers = answer.numbers;
     const std::array values{numbers.battery, numbers.memory, numbers.recording, numbers.recorded};
-    Measured sample;
+    InstrumentSample sample;
     sample.values = values;
     sample.waited = waited;
     into.take(sample);

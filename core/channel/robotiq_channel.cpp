@@ -164,7 +164,7 @@ class RobotiqSource final : public ChannelSource {
       values[i] = counts / (i < 3 ? 100.0 : 1000.0);
     }
     heard_ = steady_clock::now();
-    Measured sample{values};
+    InstrumentSample sample{values};
     sample.waited = 2.0 * static_cast<double>(later) / kRobotiqRate + std::max(0.0, slack);
     into.take(sample);
   }

@@ -263,7 +263,7 @@ class VrpnSource final : public ChannelSource {
     for (std::size_t i = 0; i < values.size(); ++i) {
       values[i] = vrpn_number_at(message.body, 8 + 8 * i);
     }
-    Measured sample{values};
+    InstrumentSample sample{values};
     sample.device_time = message.seconds + 1e-6 * message.microseconds;
     into->take(sample);
   }

@@ -266,13 +266,13 @@ bool NearTriangles::first_of_all(const Sweep& sweep, SweepHit& hit) noexcept {
 }
 
 /// @param part  receives how much of the move the list covers
-NearTriangles::Listed NearTriangles::look_through_list(const Sweep& sweep, double length,
-                                                       double& part, SweepHit& hit) noexcept {
+NearTriangles::ListOutcome NearTriangles::look_through_list(const Sweep& sweep, double length,
+                                                            double& part, SweepHit& hit) noexcept {
   part = std::max(0.0, listed_part(sweep, length));
   if (part > 0.0 && first_listed(sweep, part, length, hit)) {
-    return Listed::kMet;
+    return ListOutcome::kMet;
   }
-  return part == 1.0 ? Listed::kFree : Listed::kEnds;
+  return part == 1.0 ? ListOutcome::kFree : ListOutcome::kEnds;
 }
 
 bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) noexcept {
@@ -283,8 +283,9 @@ bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) n
     return false;
   }
   double known = 0.0, part = 0.0;
-  if (const Listed listed = look_through_list(sweep, length, known, hit); listed != Listed::kEnds) {
-    return listed == Listed::kMet;
+  if (const ListOutcome listed = look_through_list(sweep, length, known, hit);
+      listed != ListOutcome::kEnds) {
+    return listed == ListOutcome::kMet;
   }
   // The rest of the move, from where the list ends.
   const double left = (1.0 - known) * length;
@@ -295,12 +296,12 @@ bool NearTriangles::first_hit(const Sweep& sweep, SweepHit& hit, double& seen) n
   constexpr double kFar = 3.0, kCame = 0.5;  // of the next list's reach
   if (radius_ > 0.0 ? known * length < kCame * reach_ : left <= kFar * reach_) {
     list_around(rest);
-    const Listed listed = look_through_list(rest, left, part, hit);
-    if (listed == Listed::kMet) {
+    const ListOutcome listed = look_through_list(rest, left, part, hit);
+    if (listed == ListOutcome::kMet) {
       hit.t = of_move(hit.t);
     }
-    if (listed != Listed::kEnds) {
-      return listed == Listed::kMet;
+    if (listed != ListOutcome::kEnds) {
+      return listed == ListOutcome::kMet;
     }
   }
   if (radius_ > 0.0 && (known > 0.0 || part > 0.0)) {

@@ -85,8 +85,9 @@ class NearTriangles {
   void test(std::span<PartedTriangles::Candidate> few, const PartedTriangles::Move& move,
             FirstMet& first) noexcept;
   bool first_listed(const Sweep& sweep, double end, double length, SweepHit& hit) noexcept;
-  enum class Listed { kMet, kFree, kEnds };  // ends: before the move does
-  Listed look_through_list(const Sweep& sweep, double length, double& part, SweepHit& hit) noexcept;
+  enum class ListOutcome { kMet, kFree, kEnds };  // ends: before the move does
+  ListOutcome look_through_list(const Sweep& sweep, double length, double& part,
+                                SweepHit& hit) noexcept;
   bool first_of_all(const Sweep& sweep, SweepHit& hit) noexcept;
 
   const ContactSurface* surface_;

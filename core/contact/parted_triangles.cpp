@@ -31,7 +31,7 @@ Four load_four(const std::vector<float>& from, int i) {
 
 void store_four(std::vector<float>& to, int i, Four x) { std::memcpy(to.data() + i, &x, sizeof x); }
 
-Fours four_times(const Vector3d& v) {
+FourVectors four_times(const Vector3d& v) {
   return {all_four(static_cast<float>(v.x())), all_four(static_cast<float>(v.y())),
           all_four(static_cast<float>(v.z()))};
 }
@@ -75,17 +75,17 @@ void PartedTriangles::add(std::int32_t slot, const geometry::Corners& corners) n
 FourTriangles PartedTriangles::four(const std::array<int, 4>& which) const noexcept {
   const Flat &p = flat_[which[0]], &q = flat_[which[1]], &r = flat_[which[2]], &s = flat_[which[3]];
   const auto corner = [&](int k) {
-    return Fours{Four{p.x[k], q.x[k], r.x[k], s.x[k]}, Four{p.y[k], q.y[k], r.y[k], s.y[k]},
-                 Four{p.z[k], q.z[k], r.z[k], s.z[k]}};
+    return FourVectors{Four{p.x[k], q.x[k], r.x[k], s.x[k]}, Four{p.y[k], q.y[k], r.y[k], s.y[k]},
+                       Four{p.z[k], q.z[k], r.z[k], s.z[k]}};
   };
   return {corner(0), corner(1), corner(2)};
 }
 
 void PartedTriangles::part_all(const Vector3d& from) noexcept {
-  const Fours p = four_times(scale_ * (from - middle_));
+  const FourVectors p = four_times(scale_ * (from - middle_));
   for (int i = 0; i < count_; i += 4) {
     const FourTriangles t = four({i, i + 1, i + 2, i + 3});
-    const Fours axis = of_length_one(p - t.middle());
+    const FourVectors axis = of_length_one(p - t.middle());
     const Four level = t.level(axis) + all_four(kLevelled) * t.far();
     const FourInts sound = level < kNowhere;  // not where nothing is known
     store_four(x_, i, axis.x);
@@ -124,7 +124,7 @@ PartedTriangles::Move PartedTriangles::in_list(const Vector3d& from, const Vecto
 int PartedTriangles::within(const Move& move, std::span<Candidate> found) const noexcept {
   int count = 0;
   for (int first = 0; first < count_; first += 4) {
-    const Fours axis{load_four(x_, first), load_four(y_, first), load_four(z_, first)};
+    const FourVectors axis{load_four(x_, first), load_four(y_, first), load_four(z_, first)};
     const Four height = axis.dot(move.p) - load_four(level_, first) - move.apart;
     const Four rise = axis.dot(move.v);
     const FourInts apart = smaller(height, height + rise) > 0.0f;
@@ -145,17 +145,17 @@ int PartedTriangles::within(const Move& move, std::span<Candidate> found) const 
   return count;
 }
 
-Fours PartedTriangles::Move::beside(const Fours& place) const noexcept {
+FourVectors PartedTriangles::Move::beside(const FourVectors& place) const noexcept {
   const Four part = v.dot(place - p) / larger(v.dot(v), all_four(1e-30f));
   return p + v * smaller(larger(part, all_four(0.0f)), all_four(1.0f));
 }
 
 /// A plane for each of four triangles.
 struct PartedTriangles::FourPlanes {
-  Fours axis;
+  FourVectors axis;
   Four level, height, gain, least;  // least: of the heights of a move
 
-  FourPlanes(const FourTriangles& t, const Fours& way, const Move& move) noexcept
+  FourPlanes(const FourTriangles& t, const FourVectors& way, const Move& move) noexcept
       : axis(of_length_one(way)),
         level(t.level(axis) + all_four(kLevelled) * t.far()),
         height(axis.dot(move.p) - level - move.apart),
@@ -180,7 +180,7 @@ PartedTriangles::FourPlanes PartedTriangles::best_planes(const FourTriangles& t,
   FourPlanes best(t, vectors.nearest, move);
   best.take_better({t, vectors.face, move});
   if ((~geometry::bits(best.least > 0.0f) & wanted) != 0) {
-    for (const Fours& edge : {t.b - t.a, t.c - t.b, t.a - t.c}) {
+    for (const FourVectors& edge : {t.b - t.a, t.c - t.b, t.a - t.c}) {
       best.take_better({t, outwards(move.v.cross(edge), move.p - t.middle()), move});
     }
   }

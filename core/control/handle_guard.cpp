@@ -48,7 +48,7 @@ HandleGuard::HandleGuard(const HandleLoop& loop)
 
 const GainShares& HandleGuard::watch(const Eigen::Vector3d& velocity, const Eigen::Vector3d& force,
                                      const Eigen::Vector3d& accounted, double dt) noexcept {
-  const SwingCounter::Train train = turns_.look(force, accounted, dt);
+  const SwingCounter::Alternation train = turns_.look(force, accounted, dt);
   quiet_for_ += dt;
   if (oscillates(train)) {
     give_way(train);
@@ -79,7 +79,7 @@ bool HandleGuard::settled() const noexcept {
 }
 
 /// A hand may shake by itself against what is stiff, if slowly: that is calmed, and nothing goes.
-bool HandleGuard::oscillates(const SwingCounter::Train& train) noexcept {
+bool HandleGuard::oscillates(const SwingCounter::Alternation& train) noexcept {
   const bool large = train.swing >= kLargeSwing;
   if (!train.turned || train.turns < (large ? kLargeTurns : kTurns)) {
     return false;
@@ -95,7 +95,7 @@ bool HandleGuard::oscillates(const SwingCounter::Train& train) noexcept {
 }
 
 /// A swing that dies away by itself, as after a knock, is only damped.
-void HandleGuard::give_way(const SwingCounter::Train& train) noexcept {
+void HandleGuard::give_way(const SwingCounter::Alternation& train) noexcept {
   if (!settled()) {
     still_ = 0;
     return;  // what was given up last has not come to act

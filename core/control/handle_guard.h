@@ -50,8 +50,8 @@ class HandleGuard {
  private:
   GainShares wanted_shares() const noexcept;
   bool settled() const noexcept;
-  bool oscillates(const SwingCounter::Train& train) noexcept;
-  void give_way(const SwingCounter::Train& train) noexcept;
+  bool oscillates(const SwingCounter::Alternation& train) noexcept;
+  void give_way(const SwingCounter::Alternation& train) noexcept;
   void recover(double dt) noexcept;
   void calm(const Eigen::Vector3d& velocity, double dt) noexcept;
 

@@ -13,12 +13,12 @@ constexpr double kPeakMemory = 0.1;  // [s]
 
 }  // namespace
 
-SwingCounter::Train SwingCounter::look(const Eigen::Vector3d& force,
-                                       const Eigen::Vector3d& accounted, double dt) noexcept {
+SwingCounter::Alternation SwingCounter::look(const Eigen::Vector3d& force,
+                                             const Eigen::Vector3d& accounted, double dt) noexcept {
   time_ += dt;
   const double swing = least_swing_ + accounted_swing(accounted, dt);
   const bool first = !std::exchange(begun_, true);
-  Train longest;
+  Alternation longest;
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
     const double rest = force[i] - accounted[i];
@@ -70,7 +70,7 @@ void SwingCounter::look_at(Axis& axis, double force, double swing) const noexcep
 }
 
 void SwingCounter::note_turn(Axis& axis, const Extreme& extreme) const noexcept {
-  Train& train = axis.train;
+  Alternation& train = axis.train;
   const double at = 0.5 * (extreme.from + extreme.until);
   train.gap = at - axis.turned_at;
   train.swing_before = train.swing;

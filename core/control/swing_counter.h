@@ -21,7 +21,7 @@ class SwingCounter {
       : least_swing_(least_swing), longest_gap_(longest_gap) {}
 
   /// A component that alternates.
-  struct Train {
+  struct Alternation {
     int turns{0};              // that follow one another; 0: it does not alternate
     double lasted{0.0};        // from the first turn to the last [s]
     double gap{0.0};           // between the last two turns [s]
@@ -33,7 +33,8 @@ class SwingCounter {
   /// @param force      on the handle [N]
   /// @param accounted  the part of it that alternates by itself [N]
   /// @returns the longest train of the three components.
-  Train look(const Eigen::Vector3d& force, const Eigen::Vector3d& accounted, double dt) noexcept;
+  Alternation look(const Eigen::Vector3d& force, const Eigen::Vector3d& accounted,
+                   double dt) noexcept;
 
  private:
   /// A force may stay at its extreme, at a limit or without contact.
@@ -48,7 +49,7 @@ class SwingCounter {
     int direction{0};         // +1 rising, -1 falling; 0: not known yet
     double turned_at{0.0};    // of the last turn, the middle of its extreme [s]
     double turned_from{0.0};  // the force there [N]
-    Train train{};
+    Alternation train{};
   };
   double accounted_swing(const Eigen::Vector3d& accounted, double dt) noexcept;
   void look_at(Axis& axis, double force, double swing) const noexcept;

@@ -33,8 +33,8 @@ ForceWatch::ForceWatch(double limit, double longest) noexcept
 Fault ForceWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& stimulus,
                        double dt) noexcept {
   saturated_for_ = force.norm() >= kAtTheLimit * limit_ ? saturated_for_ + dt : 0.0;
-  const SwingCounter::Train near = at_limit_.look(force, stimulus, dt);
-  const SwingCounter::Train any = swings_.look(force, stimulus, dt);
+  const SwingCounter::Alternation near = at_limit_.look(force, stimulus, dt);
+  const SwingCounter::Alternation any = swings_.look(force, stimulus, dt);
   const bool oscillates =
       (near.turned && near.turns >= kTurnsNearLimit && near.lasted >= kLastingNearLimit &&
        near.largest > kNear * limit_) ||

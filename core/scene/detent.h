@@ -40,7 +40,7 @@ class Detent {
   Eigen::Vector3d direction_;
   double wave_;  // 2 pi / spacing [1/m]
   OwnWay way_;
-  Passing passing_;
+  PassingWatch passing_;
   double period_;  // of a tick [s]
 };
 

@@ -53,7 +53,7 @@ class OwnWay {
 
 /// Whether a hand passes ridges or detents, so that their force is meant to alternate: it is half a
 /// period ahead, or was 0.3 s ago, as a hand that strokes to and fro is when it turns.
-class Passing {
+class PassingWatch {
  public:
   /// @param periods  that the hand is ahead by  @param dt  since the tick before [s]
   bool look(double periods, double dt) noexcept {

@@ -90,8 +90,8 @@ struct Scene::Part {
   Fade fade{};
   bool begins{false};
   double time{0.0};
-  ReliefHere relief{};  // of a surface
-  Passing passing{};    // of a relief
+  ReliefHere relief{};     // of a surface
+  PassingWatch passing{};  // of a relief
   FieldState state{};
 
   bool acts() const noexcept { return fade.on() || !fade.over(); }

@@ -60,7 +60,7 @@ void NeonEvents::run() {
     if (over_) {
       return;
     }
-    const Asked asked = asked_.front();
+    const PendingEvent asked = asked_.front();
     lock.unlock();
     const std::string wrong = post(asked);
     const std::int64_t answered = now_();
@@ -79,7 +79,7 @@ void NeonEvents::run() {
 }
 
 /// @returns why the phone did not take it; empty if it did
-std::string NeonEvents::post(const Asked& asked) const {
+std::string NeonEvents::post(const PendingEvent& asked) const {
   httplib::Client client(host_, port_);
   client.set_connection_timeout(kAnswerWithin);
   client.set_read_timeout(kAnswerWithin);
@@ -104,7 +104,7 @@ bool NeonEvents::all_sent() const {
 
 void NeonEvents::give_up() {
   const std::lock_guard lock(mutex_);
-  for (const Asked& asked : asked_) {
+  for (const PendingEvent& asked : asked_) {
     sent_.push_back({asked.onset, -1});
   }
   asked_.clear();

@@ -44,19 +44,19 @@ class NeonEvents {
   std::string trouble() const;
 
  private:
-  struct Asked {
+  struct PendingEvent {
     TimedOnset onset;
     std::string name;
   };
   void run();
-  std::string post(const Asked& asked) const;
+  std::string post(const PendingEvent& asked) const;
 
   std::string host_;
   int port_;
   std::function<std::int64_t()> now_;
   mutable std::mutex mutex_;  // all that follow
   std::condition_variable changed_;
-  std::deque<Asked> asked_;  // the first is under way
+  std::deque<PendingEvent> asked_;  // the first is under way
   std::vector<NeonEvent> sent_;
   std::string trouble_;
   bool over_{false};

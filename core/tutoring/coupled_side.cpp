@@ -77,7 +77,7 @@ void CoupledSide::look_at_partner(std::int64_t now_ns, double dt) noexcept {
   }
 }
 
-Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
+Vector3d CoupledSide::felt(const OwnState& own, double dt) noexcept {
   const Vector3d moved = stepped_ ? Vector3d(own.tool.position - last_place_) : Vector3d::Zero();
   last_place_ = own.tool.position;
   stepped_ = true;
@@ -99,12 +99,12 @@ Vector3d CoupledSide::felt(const Own& own, double dt) noexcept {
 }
 
 /// A word about the session waits for no deadband.
-bool CoupledSide::due(const Own& own, double dt) noexcept {
+bool CoupledSide::due(const OwnState& own, double dt) noexcept {
   const bool news = own.flags != told_flags_ || own.turn != told_turn_ || own.news;
   return !p_.sparse || deadband_.due({own.tool, own.force}, dt, news);
 }
 
-std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns,
+std::optional<TickMessage> CoupledSide::told(const OwnState& own, std::int64_t now_ns,
                                              double dt) noexcept {
   if (!due(own, dt)) {
     return std::nullopt;
@@ -128,7 +128,8 @@ std::optional<TickMessage> CoupledSide::told(const Own& own, std::int64_t now_ns
   return m;
 }
 
-CoupledSide::Output CoupledSide::step(const Own& own, std::int64_t now_ns, double dt) noexcept {
+CoupledSide::Output CoupledSide::step(const OwnState& own, std::int64_t now_ns,
+                                      double dt) noexcept {
   look_at_link(now_ns, dt);
   look_at_partner(now_ns, dt);
   Output out;

@@ -47,7 +47,7 @@ class CoupledSide {
   /// A message that has arrived; one that came before is dropped. @param now_ns  own clock
   void hear(const TickMessage& message, std::int64_t now_ns) noexcept;
 
-  struct Own {
+  struct OwnState {
     PointState tool;                                 // in W
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the own world on the tool, in W [N]
     double lead{0.0};                                // own authority, 0 to 1
@@ -64,7 +64,7 @@ class CoupledSide {
   };
   /// A tick, after hear() of the messages that arrived before it. When the link is lost, the
   /// partner's force falls to zero within 50 ms, as the own world comes back.
-  Output step(const Own& own, std::int64_t now_ns, double dt) noexcept;
+  Output step(const OwnState& own, std::int64_t now_ns, double dt) noexcept;
 
   /// Sets the force of the partner's world and the coupling that acts until the next tick, if
   /// something after step() changed it.
@@ -92,9 +92,9 @@ class CoupledSide {
  private:
   void look_at_link(std::int64_t now_ns, double dt) noexcept;
   void look_at_partner(std::int64_t now_ns, double dt) noexcept;
-  Eigen::Vector3d felt(const Own& own, double dt) noexcept;
-  std::optional<TickMessage> told(const Own& own, std::int64_t now_ns, double dt) noexcept;
-  bool due(const Own& own, double dt) noexcept;
+  Eigen::Vector3d felt(const OwnState& own, double dt) noexcept;
+  std::optional<TickMessage> told(const OwnState& own, std::int64_t now_ns, double dt) noexcept;
+  bool due(const OwnState& own, double dt) noexcept;
 
   SideParameters p_;
   SequenceWindow window_;

@@ -15,7 +15,7 @@ std::int64_t link_clock_ns() noexcept {
       .count();
 }
 
-LinkThread::LinkThread(Met met)
+LinkThread::LinkThread(EstablishedLink met)
     : met_(std::move(met)),
       sealer_(met_.keys),
       opener_(met_.keys),

@@ -17,7 +17,7 @@ namespace haptrial::tutoring {
 /// this side's steady clock. What arrives before the first tick() is dropped: nobody listens yet.
 class LinkThread final : public Wire {
  public:
-  explicit LinkThread(Met met);
+  explicit LinkThread(EstablishedLink met);
   LinkThread(const LinkThread&) = delete;
   LinkThread& operator=(const LinkThread&) = delete;
 
@@ -34,7 +34,7 @@ class LinkThread final : public Wire {
   void send_out() noexcept;
   void publish() noexcept;
 
-  Met met_;
+  EstablishedLink met_;
   Sealer sealer_;
   Opener opener_;
   realtime::BlockLog<TickMessage> out_{64, 64};

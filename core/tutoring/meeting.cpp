@@ -59,7 +59,7 @@ void check_study(const LinkTerms& theirs, const MeetingRequest& request) {
       fmt::format("the other side was started with another {}; both must have the same ones", all));
 }
 
-Met host(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
+EstablishedLink host(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
   const Socket listener = listening(request.port);
   Socket datagrams = datagram_socket(request.port);
   Handshake handshake(secret, {port_of(datagrams), checksums_of(request.shared)});
@@ -92,7 +92,7 @@ void refuse_if_busy(std::span<const unsigned char> message) {
   }
 }
 
-Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
+EstablishedLink guest(const Secret& secret, const MeetingRequest& request, Clock::time_point end) {
   Address other = address_of(request.guest_of);
   Socket datagrams = datagram_socket(0);
   Handshake handshake(secret, {port_of(datagrams), checksums_of(request.shared)});
@@ -122,7 +122,7 @@ Met guest(const Secret& secret, const MeetingRequest& request, Clock::time_point
 
 }  // namespace
 
-Met meet(const Secret& secret, const MeetingRequest& request) {
+EstablishedLink meet(const Secret& secret, const MeetingRequest& request) {
   const Clock::time_point end = Clock::now() + request.patience;
   return request.guest_of.empty() ? host(secret, request, end) : guest(secret, request, end);
 }

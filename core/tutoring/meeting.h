@@ -13,7 +13,7 @@
 namespace haptrial::tutoring {
 
 /// A link that may begin: everything that LinkThread needs.
-struct Met {
+struct EstablishedLink {
   Socket datagrams;
   Address other;  // where its datagrams go
   LinkKeys keys;
@@ -42,6 +42,6 @@ struct MeetingRequest {
 /// @throws InputError where the other side has another study, or is told so; RunError where nobody
 ///         came in time, nobody listens, the host is busy with others, or it does not know the
 ///         secret
-Met meet(const Secret& secret, const MeetingRequest& request);
+EstablishedLink meet(const Secret& secret, const MeetingRequest& request);
 
 }  // namespace haptrial::tutoring

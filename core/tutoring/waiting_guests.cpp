@@ -29,13 +29,13 @@ WaitingGuests::~WaitingGuests() {
   }
 }
 
-std::optional<WaitingGuests::Answered> WaitingGuests::next(const Patience& patience) {
+std::optional<WaitingGuests::AnsweredGuest> WaitingGuests::next(const Patience& patience) {
   while (Clock::now() < patience.until) {
     wait(patience);
     const auto whole = std::ranges::find_if(
         guests_, [](const PendingPeer& guest) { return guest.heard == Handshake::kAnswerBytes; });
     if (whole != guests_.end()) {
-      Answered answered = std::move(whole->said);
+      AnsweredGuest answered = std::move(whole->said);
       guests_.erase(whole);
       return answered;
     }

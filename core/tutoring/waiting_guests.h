@@ -20,7 +20,7 @@ class WaitingGuests {
   static constexpr std::size_t kMost = 32;
   using Notice = std::function<void(const std::string&)>;
 
-  struct Answered {
+  struct AnsweredGuest {
     Socket socket;
     Address from;
     Handshake::Answer answer{};
@@ -33,12 +33,12 @@ class WaitingGuests {
   WaitingGuests& operator=(const WaitingGuests&) = delete;
 
   /// The next guest that has said its whole answer; nothing at the end of the patience.
-  std::optional<Answered> next(const Patience& patience);
+  std::optional<AnsweredGuest> next(const Patience& patience);
 
  private:
   using Clock = std::chrono::steady_clock;
   struct PendingPeer {
-    Answered said;
+    AnsweredGuest said;
     std::size_t heard{0};  // bytes of the answer
     Clock::time_point until;
     bool gone{false};

@@ -121,11 +121,11 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
       break;  // nothing was asked
     }
     places[i].may_go_back = i > 0;
-    const Turn turn = show_item(places[i], i < reached);
-    if (turn == Turn::kEnd) {
+    const PageOutcome turn = show_item(places[i], i < reached);
+    if (turn == PageOutcome::kEnd) {
       return false;
     }
-    i += turn == Turn::kBack ? -1 : 1;
+    i += turn == PageOutcome::kBack ? -1 : 1;
     reached = std::max(reached, i);
   }
   return true;
@@ -133,7 +133,7 @@ bool SessionPages::show(const std::vector<std::string>& names, PageTime when, in
 
 /// Answers of an earlier run stand; texts are shown again, as instructions are.
 /// @param again  the participant has gone back to it
-SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
+SessionPages::PageOutcome SessionPages::show_item(const Place& place, bool again) {
   const questions::Question& item = *place.item;
   record::AnswerRow row;
   row.when = place.when;
@@ -143,12 +143,13 @@ SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
   const std::optional<record::AnswerRow> earlier = answer_to(row);
   if (earlier && !again) {
     declined_ = declined_ || (item.kind->traits().consents && earlier->value == 0.0);
-    return declined_ ? Turn::kEnd : Turn::kOn;
+    return declined_ ? PageOutcome::kEnd : PageOutcome::kOn;
   }
   questions::Answer answer;
   const auto begun = std::chrono::steady_clock::now();
   if (person_answers()) {
-    if (const Turn turn = ask(place, earlier, answer, row.source); turn != Turn::kOn) {
+    if (const PageOutcome turn = ask(place, earlier, answer, row.source);
+        turn != PageOutcome::kOn) {
       return turn;
     }
     row.duration = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -160,7 +161,7 @@ SessionPages::Turn SessionPages::show_item(const Place& place, bool again) {
   if (!earlier || !is_same(answer, *earlier)) {
     keep(item, answer, std::move(row), earlier.has_value());
   }
-  return declined_ ? Turn::kEnd : Turn::kOn;
+  return declined_ ? PageOutcome::kEnd : PageOutcome::kOn;
 }
 
 /// @param changed  the item was answered before
@@ -200,9 +201,9 @@ bool SessionPages::person_answers() const {
 }
 
 /// Shows the item until it is answered, left for the one before, or the session is ended.
-SessionPages::Turn SessionPages::ask(const Place& place,
-                                     const std::optional<record::AnswerRow>& earlier,
-                                     questions::Answer& answer, AnsweredAt& source) {
+SessionPages::PageOutcome SessionPages::ask(const Place& place,
+                                            const std::optional<record::AnswerRow>& earlier,
+                                            questions::Answer& answer, AnsweredAt& source) {
   const questions::Question& item = *place.item;
   PageInput input(item, d_.texts, place.may_go_back);
   if (earlier) {
@@ -254,7 +255,7 @@ SessionPages::Turn SessionPages::ask(const Place& place,
   if (input.answer()) {
     answer = *input.answer();
   }
-  return input.answer() ? Turn::kOn : back ? Turn::kBack : Turn::kEnd;
+  return input.answer() ? PageOutcome::kOn : back ? PageOutcome::kBack : PageOutcome::kEnd;
 }
 
 /// Takes answers from elsewhere than the window. An answer that is not allowed is refused with a

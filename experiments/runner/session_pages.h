@@ -53,13 +53,13 @@ class SessionPages {
     int block;
     bool may_go_back{false};
   };
-  enum class Turn { kOn, kBack, kEnd };
+  enum class PageOutcome { kOn, kBack, kEnd };
 
   bool show(const std::vector<std::string>& names, record::PageTime when, int block,
             bool missed = false);
-  Turn show_item(const Place& place, bool again);
-  Turn ask(const Place& place, const std::optional<record::AnswerRow>& earlier,
-           questions::Answer& answer, record::AnsweredAt& source);
+  PageOutcome show_item(const Place& place, bool again);
+  PageOutcome ask(const Place& place, const std::optional<record::AnswerRow>& earlier,
+                  questions::Answer& answer, record::AnsweredAt& source);
   void keep(const questions::Question& item, const questions::Answer& answer, record::AnswerRow row,
             bool changed);
   std::optional<record::AnswerRow> answer_to(const record::AnswerRow& asked) const;

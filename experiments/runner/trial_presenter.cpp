@@ -26,7 +26,7 @@ Outcome TrialPresenter::present(const PlannedTrial& trial) {
   p_.notices.note(p_.trials.take_warnings());
   p_.prepared();
   responses_.clear();
-  Attempted last;
+  AttemptResult last;
   while (!p_.controller.requests().abort && last.again) {
     last = present_once(trial);
   }
@@ -38,7 +38,7 @@ Outcome TrialPresenter::present(const PlannedTrial& trial) {
   return {trial, last.end, responses_};
 }
 
-TrialPresenter::Attempted TrialPresenter::present_once(const PlannedTrial& trial) {
+TrialPresenter::AttemptResult TrialPresenter::present_once(const PlannedTrial& trial) {
   PendingRequests& requests = p_.controller.requests();
   const int attempt = p_.last_answer.begin_attempt(trial);
   const bool anew = std::exchange(requests.repeat, false);

@@ -77,11 +77,11 @@ class TrialPresenter {
   protocols::Outcome present(const protocols::PlannedTrial& trial);
 
  private:
-  struct Attempted {
+  struct AttemptResult {
     protocols::TrialEnd end{protocols::TrialEnd::kAborted};
     bool again{true};  // another attempt follows
   };
-  Attempted present_once(const protocols::PlannedTrial& trial);
+  AttemptResult present_once(const protocols::PlannedTrial& trial);
   bool answer_stands(bool presented);
   bool run_passes(const protocols::PlannedTrial& trial, int attempt);
   bool run_pass(const protocols::PlannedTrial& trial, const record::Phase& phase, int attempt);

@@ -106,7 +106,7 @@ LineCommands::LineCommands(std::string program, std::filesystem::path folder)
 
 LineCommands::~LineCommands() = default;
 
-LineCommands::Begun LineCommands::begin(const CommandWords& words) {
+LineCommands::StartedCommand LineCommands::begin(const CommandWords& words) {
   std::shared_ptr<Child> child;
   try {
     child = std::make_shared<Child>(program_, words, folder_);

@@ -22,13 +22,13 @@ class LineCommands {
   LineCommands(const LineCommands&) = delete;
   LineCommands& operator=(const LineCommands&) = delete;
 
-  struct Begun {
+  struct StartedCommand {
     int number{0};      // 0: the command said no
     std::string first;  // line of the command; its sentences if it said no
   };
   /// Waits for the first line, which begins with '{'. @throws RunError if it cannot be started or
   /// takes two minutes
-  Begun begin(const CommandWords& words);
+  StartedCommand begin(const CommandWords& words);
   /// @param lines  without line ends  @returns the answer to each
   /// @throws InputError for a number of none that runs; RunError if it has ended
   std::vector<std::string> answer(int number, const std::vector<std::string>& lines);

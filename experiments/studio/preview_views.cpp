@@ -55,7 +55,7 @@ std::string StudioViews::page_answer_to(const std::string& asked) const {
       page_maker_.end(pages_);
     }
   }
-  const LineCommands::Begun begun = page_maker_.begin({"show", "-", "--pages"});
+  const LineCommands::StartedCommand begun = page_maker_.begin({"show", "-", "--pages"});
   pages_ = begun.number;
   if (pages_ == 0) {
     throw RunError(begun.first);
@@ -87,7 +87,7 @@ json StudioViews::try_trial(const std::string& file, const std::string& text, in
   const CommandWords words{"show", file, "--trial", std::to_string(trial), "--try"};
   CommandWords asked = words;
   asked[1] = draft.name();
-  const LineCommands::Begun begun = tried_.begin(asked);
+  const LineCommands::StartedCommand begun = tried_.begin(asked);
   json out{{"command", shown_command(words)},
            {"device", shown_command({"run", file, "--pilot", "--device", "mouse", "--window"})}};
   if (begun.number > 0) {

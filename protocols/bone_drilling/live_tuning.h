@@ -73,7 +73,7 @@ class LiveTuning {
   std::vector<record::TuningRow> rows_of(std::span<const TakenTuning> taken);
 
  private:
-  struct Numbered {
+  struct NumberedValues {
     std::uint64_t number{0};
     TunedValues values{};
   };
@@ -92,8 +92,8 @@ class LiveTuning {
   std::string contact_;
   std::vector<Change> changes_;
   std::size_t recorded_{0};  // of changes_; the session's thread
-  realtime::LatestValue<Numbered> latest_;
-  Numbered taken_;  // the servo thread's
+  realtime::LatestValue<NumberedValues> latest_;
+  NumberedValues taken_;  // the servo thread's
   std::atomic<std::uint64_t> taken_number_{0};
 };
 

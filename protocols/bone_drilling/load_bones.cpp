@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/kept.h"
+#include "core/base/shared_cache.h"
 #include "core/bone/data/ear_side.h"
 #include "core/bone/data/load_bone.h"
 #include "core/bone/data/procedural_bone.h"
@@ -31,7 +31,7 @@ template <class Options>
 std::shared_ptr<const bone::BoneModel> procedural(
     bone::BoneModel (*make)(const Options&, const geometry::WorkReport&), const BoneDefinition& d,
     Options options = {}) {
-  static Kept<Options, bone::BoneModel> kept(6);  // an ear and its variants
+  static SharedCache<Options, bone::BoneModel> kept(6);  // an ear and its variants
   options.seed = d.bone_seed;
   options.spacing = d.spacing.value_or(options.spacing);
   return kept.get(options,
@@ -50,7 +50,7 @@ struct Charted {
 std::shared_ptr<const subject::DrillingChart> chart_of(
     const std::shared_ptr<const bone::BoneModel>& model, const BonePlacement& placement,
     const subject::CavityParameters& cavity) {
-  static Kept<Charted, subject::DrillingChart> kept(4);
+  static SharedCache<Charted, subject::DrillingChart> kept(4);
   return kept.get({model, placement, cavity}, [&] {
     return std::make_shared<const subject::DrillingChart>(
         make_chart(*model, pose_of(placement, model->grid), cavity));

@@ -66,33 +66,33 @@ class KeptLogs {
 
   record::TableList tables() const {
     record::TableList tables;
-    for (const Kept& log : logs_) {
+    for (const KeptLog& log : logs_) {
       tables.push_back(log.table);
     }
     return tables;
   }
   /// Writes what the logs hold, in the order in which they were named.
   void empty(SessionFile& file) const {
-    for (const Kept& log : logs_) {
+    for (const KeptLog& log : logs_) {
       log.empty(file);
     }
   }
   /// Entries lost for want of room, of all logs. Any thread.
   std::uint64_t dropped() const {
     std::uint64_t all = 0;
-    for (const Kept& log : logs_) {
+    for (const KeptLog& log : logs_) {
       all += log.dropped();
     }
     return all;
   }
 
  private:
-  struct Kept {
+  struct KeptLog {
     const record::TableDescription* table;
     std::function<void(SessionFile&)> empty;
     std::function<std::uint64_t()> dropped;
   };
-  std::vector<Kept> logs_;
+  std::vector<KeptLog> logs_;
 };
 
 }  // namespace haptrial::protocols

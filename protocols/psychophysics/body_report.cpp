@@ -69,9 +69,9 @@ const deformable::BodyTouch* BodyReport::touch_of(const TrialPass& pass, std::si
   return scene.touch(scene.size() - objects_.size() + object);
 }
 
-BodyReport::Touched BodyReport::touched(const TrialPass& pass, std::size_t device,
-                                        std::size_t object) const {
-  Touched sum{device, object, {}, 0};
+BodyReport::TouchedObject BodyReport::touched(const TrialPass& pass, std::size_t device,
+                                              std::size_t object) const {
+  TouchedObject sum{device, object, {}, 0};
   for (std::size_t i = 0; i < pass.intervals_begun(); ++i) {
     const deformable::BodyTouch* touch = touch_of(pass, i, device, object);
     if (touch != nullptr) {
@@ -87,11 +87,11 @@ BodyReport::Touched BodyReport::touched(const TrialPass& pass, std::size_t devic
   return sum;
 }
 
-void BodyReport::add_rows(const std::vector<Touched>& all, std::int32_t row,
+void BodyReport::add_rows(const std::vector<TouchedObject>& all, std::int32_t row,
                           SessionFile& file) const {
   std::vector<record::TouchedBodyRow> touched;
   std::vector<record::MovingBodyRow> moving;
-  for (const Touched& each : all) {
+  for (const TouchedObject& each : all) {
     const TrialObject& object = objects_[each.object];
     const TouchCounts& c = each.counts;
     const auto device = static_cast<std::int32_t>(each.device);
@@ -106,7 +106,7 @@ void BodyReport::add_rows(const std::vector<Touched>& all, std::int32_t row,
   }
 }
 
-void BodyReport::add_late(const TrialPass& pass, const Touched& body, std::int32_t row,
+void BodyReport::add_late(const TrialPass& pass, const TouchedObject& body, std::int32_t row,
                           SessionFile& file) const {
   std::vector<record::LateWindowRow> rows;
   for (std::size_t i = 0; i < pass.intervals_begun(); ++i) {
@@ -125,7 +125,7 @@ void BodyReport::add_late(const TrialPass& pass, const Touched& body, std::int32
 }
 
 void BodyReport::keep(const TrialPass& pass, std::int32_t row, SessionFile& file) {
-  std::vector<Touched> all;
+  std::vector<TouchedObject> all;
   for (std::size_t device = 0; device < pass.scenes(0).size(); ++device) {
     for (std::size_t object = 0; object < objects_.size(); ++object) {
       if (objects_[object].yields) {
@@ -138,7 +138,7 @@ void BodyReport::keep(const TrialPass& pass, std::int32_t row, SessionFile& file
   }
   add_rows(all, row, file);
   const int trial = pass.trial() % kPracticeNumbers;
-  for (const Touched& each : all) {
+  for (const TouchedObject& each : all) {
     add_late(pass, each, row, file);
     for (std::size_t i = 0; i < kLosses; ++i) {
       const Loss& loss = kAllLosses[i];

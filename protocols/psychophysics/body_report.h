@@ -31,7 +31,7 @@ class BodyReport {
   static constexpr std::size_t kLosses = 5;
 
  private:
-  struct Touched {
+  struct TouchedObject {
     std::size_t device{}, object{};
     deformable::TouchCounts counts;
     int steps{};  // on a tick; 0: it does not move
@@ -44,10 +44,10 @@ class BodyReport {
 
   const deformable::BodyTouch* touch_of(const TrialPass& pass, std::size_t interval,
                                         std::size_t device, std::size_t object) const;
-  Touched touched(const TrialPass& pass, std::size_t device, std::size_t object) const;
-  void add_late(const TrialPass& pass, const Touched& body, std::int32_t row,
+  TouchedObject touched(const TrialPass& pass, std::size_t device, std::size_t object) const;
+  void add_late(const TrialPass& pass, const TouchedObject& body, std::int32_t row,
                 SessionFile& file) const;
-  void add_rows(const std::vector<Touched>& all, std::int32_t row, SessionFile& file) const;
+  void add_rows(const std::vector<TouchedObject>& all, std::int32_t row, SessionFile& file) const;
 
   const std::vector<TrialObject>& objects_;
   std::array<Sum, kLosses> sums_{};

@@ -518,7 +518,7 @@ std::string DefinedTrials::why_aborted() const {
   }
   const StageMachine& machine = pass_->machine(begun - 1);
   const std::string stage = stages_[begun - 1][machine.stage()].name;
-  const StageMachine::Outside outside = machine.outside();
+  const StageMachine::MissedRegion outside = machine.outside();
   const bool late = machine.times()[machine.stage()].how == StageEnd::kLate;
   return !late || outside.region < 0
              ? fmt::format("{}: {}", why, stage)

@@ -45,8 +45,8 @@ void LiveTrials::conclude(const Outcome& outcome) {
   if (!now_ || outcome.end != TrialEnd::kCompleted || outcome.responses.empty()) {
     return;
   }
-  Answered answered{outcome.trial.condition, now_->track, 0.0, outcome.responses.front(),
-                    outcome.trial.practice};
+  AnsweredTrial answered{outcome.trial.condition, now_->track, 0.0, outcome.responses.front(),
+                         outcome.trial.practice};
   answered.level = now_->applied.empty() ? 0.0 : now_->applied.front();
   answered_.push_back(std::move(answered));
 }
@@ -92,7 +92,7 @@ void LiveTrials::add_last_answers(record::LiveState& state) const {
 /// Practice is counted apart; a condition without right answers has no line.
 void LiveTrials::add_shares(record::LiveState& state) const {
   std::map<std::string, std::pair<int, int>> counts;  // correct, answered
-  for (const Answered& each : answered_) {
+  for (const AnsweredTrial& each : answered_) {
     if (each.first.correct >= 0) {
       auto& [correct, all] = counts[each.practice ? "practice" : short_numbers(each.condition)];
       correct += each.first.correct;
@@ -107,7 +107,7 @@ void LiveTrials::add_shares(record::LiveState& state) const {
 }
 
 void LiveTrials::add_track(record::LiveState& state) const {
-  for (const Answered& each : answered_) {
+  for (const AnsweredTrial& each : answered_) {
     if (now_->track >= 0 && each.track == now_->track) {
       state.track.push_back({each.level, each.first.correct});
     }

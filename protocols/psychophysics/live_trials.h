@@ -22,7 +22,7 @@ class LiveTrials {
   std::optional<record::LiveState> state() const;
 
  private:
-  struct Answered {
+  struct AnsweredTrial {
     std::string condition;
     int track{-1};
     double level{0.0};
@@ -38,7 +38,7 @@ class LiveTrials {
   std::string variable_;  // that it sets
   std::string unit_;      // of the variable
   int reversals_{-1};     // of the track; -1: it is no staircase
-  std::vector<Answered> answered_;
+  std::vector<AnsweredTrial> answered_;
 };
 
 }  // namespace haptrial::protocols

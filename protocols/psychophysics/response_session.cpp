@@ -115,7 +115,7 @@ class ResponseSession::SimulatedSession {
     decider_.begin_trial(number);
     for (const TrialQuestion& question : s_.d_.questions) {
       const bool first = answers.empty();
-      const Decider::Said said =
+      const Decider::DecidedAnswer said =
           decider_.decide(question, first, std::span(percepts_.data(), intervals));
       record::ResponseRow& row = answers.emplace_back();
       row.question = question.name;

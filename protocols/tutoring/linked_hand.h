@@ -136,7 +136,7 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private tuto
   bool ever_over_{false};      // the partner has said that it is over
   bool ever_left_{false};
   device::Fault fault_{device::Fault::kNone};
-  tutoring::CoupledSide::Own own_;
+  tutoring::CoupledSide::OwnState own_;
   Eigen::Vector3d coupling_{Eigen::Vector3d::Zero()};  // of this tick, before the envelope [N]
   Eigen::Vector3d acts_{Eigen::Vector3d::Zero()};      // on the hand until the next tick [N]
   double last_share_{1.0};                             // of the own world

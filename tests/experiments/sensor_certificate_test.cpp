@@ -100,7 +100,7 @@ class WireSource final : public channel::ChannelSource {
   WireSource(Wire& wire, device::Part part) : wire_(wire), part_(part) {}
   void read(channel::ChannelInbox& into, std::chrono::milliseconds patience) override {
     for (const Wire::Sample& sample : wire_.take(patience)) {
-      channel::Measured measured;
+      channel::InstrumentSample measured;
       const std::vector<double> values = values_on(part_, sample.force);
       measured.values = values;
       measured.time = channel::SampleTime{std::llround(1e9 * sample.time), 1e-6};

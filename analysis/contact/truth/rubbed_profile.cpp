@@ -27,7 +27,7 @@ Vector3d RubbedProfile::place(const Spot& spot) const {
 }
 
 /// @returns false if the proxy leaves the surface; `left` says over what
-bool RubbedProfile::slide(Spot& at, const Vector3d& tool, Left& left) const {
+bool RubbedProfile::slide(Spot& at, const Vector3d& tool, LeftFaces& left) const {
   left = {at.face, at.face};
   for (std::size_t turns = 0; turns <= 2 * faces_.size(); ++turns) {
     const ProfileFace& face = faces_[at.face];
@@ -77,7 +77,7 @@ void RubbedProfile::rest_in_valley(Spot& at, std::size_t other, const Vector3d& 
 
 /// First point at which a straight way enters the solid, over none of the faces that it leaves.
 std::optional<RubbedProfile::Spot> RubbedProfile::meet(const Vector3d& from, const Vector3d& to,
-                                                       const std::optional<Left>& left) const {
+                                                       const std::optional<LeftFaces>& left) const {
   std::optional<Spot> first;
   double soonest = kEndless;
   for (std::size_t f = 0; f < faces_.size(); ++f) {
@@ -105,7 +105,7 @@ std::optional<Vector3d> RubbedProfile::next(const Vector3d& tool) {
   }
   // A flight may land on another face, once on each.
   for (std::size_t flight = 0; spot_ && flight <= faces_.size(); ++flight) {
-    Left left{};
+    LeftFaces left{};
     if (slide(*spot_, tool, left)) {
       return place(*spot_);
     }

@@ -40,14 +40,14 @@ class RubbedProfile {
     std::size_t face;
     double along, z;  // [m]
   };
-  struct Left {
+  struct LeftFaces {
     std::size_t face, other;  // the same, or both that make an edge
   };
   Eigen::Vector3d place(const Spot& spot) const;
-  bool slide(Spot& at, const Eigen::Vector3d& tool, Left& left) const;
+  bool slide(Spot& at, const Eigen::Vector3d& tool, LeftFaces& left) const;
   void rest_in_valley(Spot& at, std::size_t other, const Eigen::Vector3d& tool) const;
   std::optional<Spot> meet(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
-                           const std::optional<Left>& left) const;
+                           const std::optional<LeftFaces>& left) const;
 
   std::vector<ProfileFace> faces_;
   bool closed_;

@@ -26,12 +26,12 @@ constexpr std::array<Pair, 10> kPairs{{{"m", "rad", 1},
 
 }  // namespace
 
-std::optional<AngularUnits::Given> AngularUnits::given_for(std::string_view unit) const {
+std::optional<AngularUnits::GivenUnit> AngularUnits::given_for(std::string_view unit) const {
   const auto* const pair = std::ranges::find(kPairs, unit, &Pair::along);
   if (pair == kPairs.end()) {
     return std::nullopt;
   }
-  return Given{pair->about, std::pow(radius_, pair->power)};
+  return GivenUnit{pair->about, std::pow(radius_, pair->power)};
 }
 
 }  // namespace haptrial

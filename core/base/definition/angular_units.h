@@ -14,7 +14,7 @@ namespace haptrial {
 class AngularUnits {
  public:
   /// A number as it is given, in place of the one that is asked for.
-  struct Given {
+  struct GivenUnit {
     std::string_view unit;
     double factor;  // of what is asked for, to what is given
     Bounds bounds(const Bounds& asked) const {
@@ -26,7 +26,7 @@ class AngularUnits {
   explicit AngularUnits(double radius) : radius_(radius) {}
   /// Nothing where the unit is the same: "s", "Hz", none.
   /// @param unit  that a reader asks for, as Schema has it
-  std::optional<Given> given_for(std::string_view unit) const;
+  std::optional<GivenUnit> given_for(std::string_view unit) const;
 
  private:
   double radius_;

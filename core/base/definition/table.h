@@ -117,7 +117,7 @@ class Table {
   /// is read comes back in the units that readers ask for.
   void state_in(const AngularUnits& units);
   /// How the table states a number for which readers ask in `unit`; nothing: in this unit.
-  std::optional<AngularUnits::Given> given_for(std::string_view unit) const;
+  std::optional<AngularUnits::GivenUnit> given_for(std::string_view unit) const;
 
   /// The number that a text within `key` stands for; nothing, with the problem noted, if it has
   /// none or is out of bounds.

@@ -75,7 +75,7 @@ void Table::state_in(const AngularUnits& units) {
   document_->units.insert_or_assign(node_->path, units);
 }
 
-std::optional<AngularUnits::Given> Table::given_for(std::string_view unit) const {
+std::optional<AngularUnits::GivenUnit> Table::given_for(std::string_view unit) const {
   const auto units = document_->units.find(node_->path);
   return units == document_->units.end() ? std::nullopt : units->second.given_for(unit);
 }

@@ -66,8 +66,8 @@ std::string shown_with_kind(const toml::node& node) {
              : shown(node);
 }
 
-std::string rewritten(const toml::node& node, std::string_view key, Wanted wanted) {
-  if (wanted == Wanted::kText) {
+std::string rewritten(const toml::node& node, std::string_view key, WantedKind wanted) {
+  if (wanted == WantedKind::kText) {
     if (node.is_number() || node.is_boolean()) {
       const std::string value = shown(node);
       return fmt::format("write it in quotes: {} = \"{}\"", key, value);
@@ -77,16 +77,16 @@ std::string rewritten(const toml::node& node, std::string_view key, Wanted wante
     try {
       const toml::table inside = parse_toml("x = " + text, "");
       const toml::node* value = inside.get("x");
-      const bool fits = wanted == Wanted::kTruth   ? value->is_boolean()
-                        : wanted == Wanted::kWhole ? value->is_integer()
-                                                   : value->is_number();
+      const bool fits = wanted == WantedKind::kTruth   ? value->is_boolean()
+                        : wanted == WantedKind::kWhole ? value->is_integer()
+                                                       : value->is_number();
       if (fits && inside.size() == 1 && text.find_first_of("#\n") == std::string::npos) {
         return fmt::format("write it without quotes: {} = {}", key, text);
       }
     } catch (const InputError&) {
       return "";
     }
-  } else if (wanted == Wanted::kWhole && node.is_floating_point()) {
+  } else if (wanted == WantedKind::kWhole && node.is_floating_point()) {
     const double value = *node.value<double>();
     if (value == std::floor(value) && std::abs(value) < 1e15) {
       return fmt::format("write it without a decimal point: {} = {:.0f}", key, value);

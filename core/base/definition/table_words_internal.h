@@ -26,18 +26,18 @@ std::string shown(const toml::node& node);
 /// The same, with "the text" before a text.
 std::string shown_with_kind(const toml::node& node);
 
-enum class Wanted { kNumber, kWhole, kTruth, kText };
+enum class WantedKind { kNumber, kWhole, kTruth, kText };
 template <class T>
-constexpr Wanted wanted() {
-  return std::is_same_v<T, std::string>    ? Wanted::kText
-         : std::is_same_v<T, bool>         ? Wanted::kTruth
-         : std::is_same_v<T, std::int64_t> ? Wanted::kWhole
-                                           : Wanted::kNumber;
+constexpr WantedKind wanted() {
+  return std::is_same_v<T, std::string>    ? WantedKind::kText
+         : std::is_same_v<T, bool>         ? WantedKind::kTruth
+         : std::is_same_v<T, std::int64_t> ? WantedKind::kWhole
+                                           : WantedKind::kNumber;
 }
 
 /// "write it without quotes: rate = 1000", for a value that is good but for its quotes or its
 /// decimal point; empty for others. @param key  "rate"
-std::string rewritten(const toml::node& node, std::string_view key, Wanted wanted);
+std::string rewritten(const toml::node& node, std::string_view key, WantedKind wanted);
 
 /// The items with commas between them.
 std::string joined(const std::vector<std::string>& items);

@@ -77,7 +77,7 @@ void DustState::wake_above_and_beside(Ref ref) {
 
 /// Out of the region, and out of the memory that there may be, is out. Whoever moves dust wakes
 /// what is around the cell that it came from: once, where it went to several.
-void DustState::move(Ref from, const Look& to, std::int32_t amount) {
+void DustState::move(Ref from, const CandidateCell& to, std::int32_t amount) {
   const Ref ref = to.outside || to.ref != kNone ? to.ref : make(to.cell);
   if (to.outside || ref == kNone) {
     fallen += amount;
@@ -106,8 +106,8 @@ void DustState::fall(Ref ref) {
   if (!passage(ref, kDown)) {
     return;
   }
-  const Look here = look(grid.cell(ref), ref);
-  const Look below = look_beside(here, kBelow);
+  const CandidateCell here = look(grid.cell(ref), ref);
+  const CandidateCell below = look_beside(here, kBelow);
   const std::int32_t amount = below.outside ? here.amount : std::min(here.amount, below.room);
   if (amount > 0) {
     move(ref, below, amount);
@@ -121,7 +121,7 @@ void DustState::seek(Ref ref) {
     seek_way_out(ref);
     return;
   }
-  const Look here = look(grid.cell(ref), ref);
+  const CandidateCell here = look(grid.cell(ref), ref);
   const auto& stands = in_water(centre(here.cell)) ? wet_limit : limit;
   std::array<Flow, kSides> out;
   std::size_t count = 0;
@@ -130,16 +130,16 @@ void DustState::seek(Ref ref) {
     if (!passage(ref, step)) {
       continue;
     }
-    const Look side = look_beside(here, direction_of(step));
+    const CandidateCell side = look_beside(here, direction_of(step));
     if (side.room == 0) {
       continue;
     }
-    const Look below = look_beside(side, kBelow);
+    const CandidateCell below = look_beside(side, kBelow);
     const bool room_below = below.outside || below.room > capacity / kFull;
     const bool drops =
         side.outside ||
         (room_below && (side.ref != kNone ? passage(side.ref, kDown) : passage(side, below)));
-    const Look& to = drops && !side.outside ? below : side;
+    const CandidateCell& to = drops && !side.outside ? below : side;
     const std::int32_t excess =
         (drops ? capacity : 0) + here.amount - to.amount - stands[static_cast<std::size_t>(step)];
     const std::int32_t amount = std::min(excess / kPace, to.room / kSides);
@@ -161,10 +161,10 @@ void DustState::seek(Ref ref) {
 /// Bone has moved onto dust: it goes to whatever cell around is free, also above.
 void DustState::seek_way_out(Ref ref) {
   constexpr int kAround = 26;
-  const Look here = look(grid.cell(ref), ref);
+  const CandidateCell here = look(grid.cell(ref), ref);
   std::int32_t left = here.amount;
   for (int direction = 26; direction >= 0 && left > 0; --direction) {
-    const Look to = look_beside(here, direction);
+    const CandidateCell to = look_beside(here, direction);
     const bool into_bone = to.ref != kNone ? solid(to.ref) : bones.hold(centre(to.cell));
     if (to.ref != ref && !into_bone) {
       const std::int32_t amount = std::min(left, to.room / kAround);

@@ -84,7 +84,7 @@ DustCell DustState::cell_at(const Eigen::Vector3d& p_W) const {
   return at.floor().min(1e8).max(-1e8).cast<int>();
 }
 
-DustState::Look DustState::look(const DustCell& cell, Ref ref) const {
+DustState::CandidateCell DustState::look(const DustCell& cell, Ref ref) const {
   if (ref == kNone) {
     return {ref, cell, 0, capacity, !in_region(cell)};
   }
@@ -94,7 +94,7 @@ DustState::Look DustState::look(const DustCell& cell, Ref ref) const {
           (there.flags & kOutside) != 0};
 }
 
-DustState::Look DustState::look_beside(const Look& from, int direction) const {
+DustState::CandidateCell DustState::look_beside(const CandidateCell& from, int direction) const {
   const DustCell cell = from.cell + DustGrid::offset(direction);
   return look(cell, from.ref == kNone ? grid.find(cell) : grid.beside(from.ref, direction));
 }
@@ -111,7 +111,7 @@ bool DustState::passage(Ref ref, int step) {
   return free;
 }
 
-bool DustState::passage(const Look& from, const Look& to) const {
+bool DustState::passage(const CandidateCell& from, const CandidateCell& to) const {
   return bones.open(centre(from.cell), centre(to.cell));
 }
 

@@ -47,7 +47,7 @@ struct DustState {
   static constexpr std::uint32_t kOfBone = ~0U << 4;  // all that bone decides
 
   /// A cell as dust finds it that might go there; it need not have a block.
-  struct Look {
+  struct CandidateCell {
     Ref ref;
     DustCell cell;
     std::int32_t amount;
@@ -56,7 +56,7 @@ struct DustState {
   };
   struct Flow {
     Ref from;
-    Look to;
+    CandidateCell to;
     std::int32_t amount;
   };
 
@@ -66,10 +66,10 @@ struct DustState {
   Eigen::Vector3d centre(const DustCell& cell) const;
   DustCell cell_at(const Eigen::Vector3d& p_W) const;
   bool in_region(const DustCell& cell) const { return parameters.region.contains(centre(cell)); }
-  Look look(const DustCell& cell, Ref ref) const;
-  Look look_beside(const Look& from, int direction) const;
+  CandidateCell look(const DustCell& cell, Ref ref) const;
+  CandidateCell look_beside(const CandidateCell& from, int direction) const;
   bool passage(Ref ref, int step);
-  bool passage(const Look& from, const Look& to) const;
+  bool passage(const CandidateCell& from, const CandidateCell& to) const;
   bool solid(Ref ref);
   Ref make(const DustCell& cell);
 
@@ -77,7 +77,7 @@ struct DustState {
   void change(Ref ref, std::int32_t by);
   void wake(Ref ref);
   void wake_above_and_beside(Ref ref);
-  void move(Ref from, const Look& to, std::int32_t amount);
+  void move(Ref from, const CandidateCell& to, std::int32_t amount);
   void make_flows();
 
   // A step
@@ -100,11 +100,11 @@ struct DustState {
   void forget_reach();
   void set_free(Ref ref);
   void place_held();
-  struct Placed {
+  struct PlacedDust {
     std::int64_t amount;
     std::int64_t cells;  // that had room
   };
-  Placed place_in_shell(double inner, double outer, std::int64_t rest);
+  PlacedDust place_in_shell(double inner, double outer, std::int64_t rest);
 
   DustParameters parameters;
   Eigen::Matrix3d R_WD;  // from the lattice's frame D, whose z axis is up

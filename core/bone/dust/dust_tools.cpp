@@ -123,7 +123,7 @@ void DustState::expel() {
     if (grid.at(ref).amount == 0) {
       continue;
     }
-    const Look here = look(grid.cell(ref), ref);
+    const CandidateCell here = look(grid.cell(ref), ref);
     const double depth = outside_tools(centre(here.cell));
     std::array<Flow, 6> out;
     std::array<double, 6> weights{};
@@ -132,7 +132,7 @@ void DustState::expel() {
     for (const int face : kFaces) {
       const bool up = face == kUp;
       const auto& by = kDustSteps[up ? kDown : static_cast<std::size_t>(face)];
-      const Look to = look_beside(here, DustGrid::direction(by[0], by[1], up ? 1 : by[2]));
+      const CandidateCell to = look_beside(here, DustGrid::direction(by[0], by[1], up ? 1 : by[2]));
       const double out_by = outside_tools(centre(to.cell)) - depth;
       const double gain = up ? std::max(0.0, out_by) + upwards : out_by;
       const std::int32_t room = (capacity - to.amount) / static_cast<int>(kFaces.size());
@@ -252,7 +252,7 @@ void DustState::place_held() {
 }
 
 /// Puts even parts of `rest` at this distance from the burr's centre.
-DustState::Placed DustState::place_in_shell(double inner, double outer, std::int64_t rest) {
+DustState::PlacedDust DustState::place_in_shell(double inner, double outer, std::int64_t rest) {
   std::vector<std::pair<DustCell, std::int32_t>> free;
   const DustCell middle = cell_at(pending.centre);
   const int extent = static_cast<int>(std::ceil(outer / parameters.cell)) + 1;
@@ -265,7 +265,7 @@ DustState::Placed DustState::place_in_shell(double inner, double outer, std::int
         if (distance < inner * inner || distance >= outer * outer || !in_region(cell)) {
           continue;
         }
-        const Look there = look(cell, grid.find(cell));
+        const CandidateCell there = look(cell, grid.find(cell));
         if (there.room > 0 && outside_tools(at) >= 0.0 && bones.open(pending.centre, at)) {
           free.emplace_back(cell, there.room);
         }

@@ -91,7 +91,7 @@ void HintWatch::tick(const HintTick& tick, std::span<const HintVoxel> voxels, bo
   each(HintVoxel::What::kRemoved, [&](const HintVoxel& v) { removal(tick, v, shown); });
   each(HintVoxel::What::kCut, [this](const HintVoxel& v) { sight_.cut(v.voxel); });
   for (const HintKind kind : kAllHintKinds) {
-    Running& running = of(kind);
+    RunningHint& running = of(kind);
     if (running.on && last_ >= running.faults.back() + holds_) {
       end(running);
     }
@@ -119,7 +119,7 @@ void HintWatch::note(HintKind kind, bool faulty, const Fault& fault, bool shown)
   if (!faulty || !setup_.gives(kind)) {
     return;
   }
-  Running& running = of(kind);
+  RunningHint& running = of(kind);
   const bool enough = running.come(fault.voxel.sequence, setup_.fewest, within_);
   if (!running.on && !enough) {
     return;
@@ -140,7 +140,7 @@ void HintWatch::note(HintKind kind, bool faulty, const Fault& fault, bool shown)
 }
 
 /// @returns whether `fewest` came within `within` ticks.
-bool HintWatch::Running::come(std::uint64_t sequence, int fewest, std::uint64_t within) {
+bool HintWatch::RunningHint::come(std::uint64_t sequence, int fewest, std::uint64_t within) {
   const auto needed = static_cast<std::size_t>(fewest);
   if (faults.size() >= needed) {
     faults.erase(faults.begin());
@@ -149,7 +149,7 @@ bool HintWatch::Running::come(std::uint64_t sequence, int fewest, std::uint64_t 
   return faults.size() == needed && sequence - faults.front() <= within;
 }
 
-void HintWatch::keep_worst(Running& running, const Fault& fault) const {
+void HintWatch::keep_worst(RunningHint& running, const Fault& fault) const {
   const HintMap::Place& place = fault.place;
   running.excess = fault.excess;
   running.row.structure = map_->name(place.structure);
@@ -160,7 +160,7 @@ void HintWatch::keep_worst(Running& running, const Fault& fault) const {
   running.row.limit_speed = place.safe != nullptr ? place.safe->speed : 0.0;
 }
 
-void HintWatch::end(Running& running) {
+void HintWatch::end(RunningHint& running) {
   running.on = false;
   running.faults.clear();
   running.row.sequence = last_;
@@ -169,7 +169,7 @@ void HintWatch::end(Running& running) {
 
 void HintWatch::end() {
   for (const HintKind kind : kAllHintKinds) {
-    Running& running = of(kind);
+    RunningHint& running = of(kind);
     if (running.on) {
       end(running);
     }

@@ -85,7 +85,7 @@ class HintWatch {
   std::vector<record::HintRow>& rows() noexcept { return rows_; }
 
  private:
-  struct Running {
+  struct RunningHint {
     bool on{false};
     std::vector<std::uint64_t> faults;  // sequences of the last ones, at most setup's `fewest`
     double excess{0.0};                 // over the limit, of the worst one
@@ -100,9 +100,9 @@ class HintWatch {
   };
   void removal(const HintTick& tick, const HintVoxel& voxel, bool shown);
   void note(HintKind kind, bool faulty, const Fault& fault, bool shown);
-  void keep_worst(Running& running, const Fault& fault) const;
-  void end(Running& running);
-  Running& of(HintKind kind) noexcept { return running_[static_cast<std::size_t>(kind)]; }
+  void keep_worst(RunningHint& running, const Fault& fault) const;
+  void end(RunningHint& running);
+  RunningHint& of(HintKind kind) noexcept { return running_[static_cast<std::size_t>(kind)]; }
 
   HintSetup setup_;
   std::shared_ptr<const HintMap> map_;
@@ -110,7 +110,7 @@ class HintWatch {
   std::uint64_t within_;  // [ticks]
   std::uint64_t holds_;   // likewise
   std::uint64_t last_{0};
-  std::array<Running, kHintKinds> running_;
+  std::array<RunningHint, kHintKinds> running_;
   std::int32_t structure_{-1};
   std::vector<record::HintRow> rows_;
 };

@@ -81,13 +81,13 @@ class Emptiness {
 
 }  // namespace
 
-Tidied keep_largest_part(BoneModel& model) {
+TidyResult keep_largest_part(BoneModel& model) {
   const BoneVolume volume(model);
   Occupancy occupancy;
   occupancy.follow(volume);
   Flood flood;
   flood.look(volume, occupancy);
-  Tidied tidied;
+  TidyResult tidied;
   for (const Part& part : flood.loose(volume)) {
     bool any = false;
     for (const Voxel& voxel : part) {
@@ -107,9 +107,9 @@ Tidied keep_largest_part(BoneModel& model) {
   return tidied;
 }
 
-Tidied fill_holes(BoneModel& model, std::size_t most_voxels) {
+TidyResult fill_holes(BoneModel& model, std::size_t most_voxels) {
   Emptiness emptiness(model, most_voxels);
-  Tidied tidied;
+  TidyResult tidied;
   std::vector<std::pair<std::vector<std::size_t>, std::uint8_t>> holes;
   for (std::size_t at = 0; at < model.labels.size(); ++at) {
     if (!emptiness.is_new(at)) {

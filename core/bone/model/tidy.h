@@ -7,7 +7,7 @@
 namespace haptrial::bone {
 
 /// Changes by one step of tidying.
-struct Tidied {
+struct TidyResult {
   std::size_t parts{0};   // that went, or holes that were filled
   std::size_t voxels{0};  // of them
 };
@@ -15,11 +15,11 @@ struct Tidied {
 /// Leaves of plain bone only what hangs together, through faces, with the part of the whole bone
 /// that has most voxels: noise of a scan and what lies beside the head go. Other structures stay,
 /// as an ossicle touches nothing.
-Tidied keep_largest_part(BoneModel& model);
+TidyResult keep_largest_part(BoneModel& model);
 
 /// Fills holes: empty voxels that faces do not connect with the grid's border, in parts of at most
 /// `most_voxels`. A filled voxel takes the commonest label around its hole and, where the bone has
 /// densities, the lowest density of bone.
-Tidied fill_holes(BoneModel& model, std::size_t most_voxels);
+TidyResult fill_holes(BoneModel& model, std::size_t most_voxels);
 
 }  // namespace haptrial::bone

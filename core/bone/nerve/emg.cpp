@@ -31,11 +31,11 @@ void Emg::discharge(std::uint64_t sample, double amplitude) noexcept {
   }
 }
 
-Planted Emg::burst(double severity) noexcept {
+SimulatedDischarge Emg::burst(double severity) noexcept {
   const double seconds = 0.05 + 0.25 * severity * random_.uniform();
   const auto units = 5 + static_cast<int>(25.0 * severity * random_.uniform());
   const double strength = p_.unit * (0.5 + severity);
-  Planted planted{Planted::Kind::kBurst, at_, at_, 0.0};
+  SimulatedDischarge planted{SimulatedDischarge::Kind::kBurst, at_, at_, 0.0};
   for (int i = 0; i < units; ++i) {
     const auto sample = at_ + static_cast<std::uint64_t>(seconds * p_.rate * random_.uniform());
     const double amplitude = strength * std::exp(0.4 * random_.normal());
@@ -46,7 +46,7 @@ Planted Emg::burst(double severity) noexcept {
   return planted;
 }
 
-Planted Emg::train(double severity) noexcept {
+SimulatedDischarge Emg::train(double severity) noexcept {
   const double seconds = 0.1 + 3.0 * severity * random_.uniform();
   Train train;
   train.next = at_;
@@ -56,15 +56,15 @@ Planted Emg::train(double severity) noexcept {
   const auto place = std::min_element(trains_.begin(), trains_.end(),
                                       [](const Train& a, const Train& b) { return a.end < b.end; });
   *place = train;  // in place of the one that ends soonest
-  return {Planted::Kind::kTrain, at_, train.end, train.amplitude};
+  return {SimulatedDischarge::Kind::kTrain, at_, train.end, train.amplitude};
 }
 
-Planted Emg::response(double latency, double amplitude) noexcept {
+SimulatedDischarge Emg::response(double latency, double amplitude) noexcept {
   const auto first = at_ + static_cast<std::uint64_t>(latency * p_.rate);
   if (amplitude > 0.0) {
     discharge(first, amplitude);
   }
-  return {Planted::Kind::kResponse, first, first + wave_length_ - 1, amplitude};
+  return {SimulatedDischarge::Kind::kResponse, first, first + wave_length_ - 1, amplitude};
 }
 
 std::span<const float> Emg::step(const Artefacts& artefacts, std::size_t count) noexcept {

@@ -23,7 +23,7 @@ struct EmgParameters {
 };
 
 /// A discharge that was put into a signal: the truth that a detector is held against.
-struct Planted {
+struct SimulatedDischarge {
   enum class Kind : std::uint8_t { kBurst, kTrain, kResponse, kArtefact } kind{Kind::kBurst};
   std::uint64_t first{0};  // sample, from 0
   std::uint64_t last{0};
@@ -40,10 +40,10 @@ class Emg {
   Emg(const EmgParameters& parameters, std::uint64_t seed, std::string_view name);
 
   /// @param severity  0 to 1: stronger and longer. @returns what comes, from the next sample on
-  Planted burst(double severity) noexcept;
-  Planted train(double severity) noexcept;
+  SimulatedDischarge burst(double severity) noexcept;
+  SimulatedDischarge train(double severity) noexcept;
   /// Plants the response to a stimulus. @param latency  [s] @param amplitude  peak [V]
-  Planted response(double latency, double amplitude) noexcept;
+  SimulatedDischarge response(double latency, double amplitude) noexcept;
 
   /// Artefacts of this tick; those of a drill and a suction are the same in every muscle.
   struct Artefacts {

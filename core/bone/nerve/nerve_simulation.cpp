@@ -16,13 +16,13 @@ constexpr double kBetweenBranches = 0.0009;  // that an answer comes later from 
 constexpr double kAnswerWithin = 0.02;       // after a stimulus an event is its answer [s]
 constexpr double kSpikeStep = 0.05;          // share by which a spike differs from muscle to muscle
 
-EventKind kind_of(Planted::Kind kind) {
+EventKind kind_of(SimulatedDischarge::Kind kind) {
   switch (kind) {
-    case Planted::Kind::kTrain:
+    case SimulatedDischarge::Kind::kTrain:
       return EventKind::kTrain;
-    case Planted::Kind::kResponse:
+    case SimulatedDischarge::Kind::kResponse:
       return EventKind::kResponse;
-    case Planted::Kind::kArtefact:
+    case SimulatedDischarge::Kind::kArtefact:
       return EventKind::kArtefact;
     default:
       return EventKind::kBurst;
@@ -96,7 +96,8 @@ std::optional<std::size_t> NerveSimulation::branch(std::size_t nerve) noexcept {
   return count > 0 ? std::optional(first + branches_.below(count)) : std::nullopt;
 }
 
-void NerveSimulation::plant(const NerveTick& tick, std::size_t channel, const Planted& planted) {
+void NerveSimulation::plant(const NerveTick& tick, std::size_t channel,
+                            const SimulatedDischarge& planted) {
   const NerveTick::OfNerve& nerve = tick.nerves[channels_[channel].of];
   record::NerveDischargeRow row;
   row.sequence = tick.sequence;
@@ -106,7 +107,8 @@ void NerveSimulation::plant(const NerveTick& tick, std::size_t channel, const Pl
   row.amplitude = planted.amplitude;
   row.distance = static_cast<double>(nerve.distance);
   row.warmth = static_cast<double>(nerve.warmth);
-  row.current = planted.kind == Planted::Kind::kResponse ? static_cast<double>(tick.current) : 0.0;
+  row.current =
+      planted.kind == SimulatedDischarge::Kind::kResponse ? static_cast<double>(tick.current) : 0.0;
   rows_.discharges.push_back(row);
 }
 

@@ -53,7 +53,7 @@ class NerveSimulation {
 
  private:
   void discharge(const NerveTick& tick);
-  void plant(const NerveTick& tick, std::size_t channel, const Planted& planted);
+  void plant(const NerveTick& tick, std::size_t channel, const SimulatedDischarge& planted);
   std::optional<std::size_t> branch(std::size_t nerve) noexcept;
   void make(const NerveTick& tick);
   void look(const NerveTick& tick, bool heard);

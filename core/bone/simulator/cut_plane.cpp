@@ -78,7 +78,7 @@ void CutPlaneTool::step(BoneWorld& world, int most) noexcept {
   count_ = 0;
   PieceSet volumes = busy_ ? volumes_of(piece_) : 0;
   for (int passed = 0; busy_ && passed < most;) {
-    const Traced ray = trace(world, volumes);
+    const TraceResult ray = trace(world, volumes);
     if (!ray.whole) {
       return;  // the next step traces it again: what it has emptied is not in its way
     }
@@ -97,7 +97,7 @@ bool CutPlaneTool::next_piece() noexcept {
   return rest != 0;
 }
 
-CutPlaneTool::Traced CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noexcept {
+CutPlaneTool::TraceResult CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noexcept {
   const auto place = [](std::int64_t number, int count, double length) {
     return length * ((static_cast<double>(number) + 0.5) / count - 0.5);
   };
@@ -105,7 +105,7 @@ CutPlaneTool::Traced CutPlaneTool::trace(BoneWorld& world, PieceSet volumes) noe
                                place(ray_ / columns_, rows_, plane_.height), 0.0);
   const Eigen::Isometry3d& pose_BC = pose_BC_[static_cast<std::size_t>(piece_)];
   const Eigen::Vector3d to_C = from_C + plane_.depth * Eigen::Vector3d::UnitZ();
-  Traced ray{0, true};
+  TraceResult ray{0, true};
   walk_voxels(world.volume(0).grid(), pose_BC * from_C, pose_BC * to_C,
               [&](const Voxel& voxel, double, double) {
                 ++ray.passed;

@@ -34,7 +34,7 @@ class CutPlaneTool {
   /// Voxels that a step empties at most: what is logged of a cut must not outrun who reads the log.
   static constexpr std::size_t kMostEmptied = 256;
 
-  struct Removed {
+  struct RemovedVoxels {
     std::int64_t voxels{0};
     double amount{0.0};                         // sum of densities [voxels]
     std::array<std::uint32_t, 256> by_label{};  // voxels
@@ -51,15 +51,15 @@ class CutPlaneTool {
   /// Voxels that the last step() emptied, in order.
   std::span<const EmptiedIn> emptied() const noexcept { return {emptied_.data(), count_}; }
   /// Bone that the cut has removed so far.
-  const Removed& removed() const noexcept { return removed_; }
+  const RemovedVoxels& removed() const noexcept { return removed_; }
 
  private:
   bool next_piece() noexcept;
-  struct Traced {
+  struct TraceResult {
     int passed;  // voxels, at least 1
     bool whole;  // the ray came to its end
   };
-  Traced trace(BoneWorld& world, PieceSet volumes) noexcept;
+  TraceResult trace(BoneWorld& world, PieceSet volumes) noexcept;
 
   bool busy_{false};
   CutPlane plane_;
@@ -69,7 +69,7 @@ class CutPlaneTool {
   int rows_{0};
   int piece_{0};
   std::int64_t ray_{0};  // the next one, in this piece
-  Removed removed_;
+  RemovedVoxels removed_;
   std::array<EmptiedIn, kMostEmptied> emptied_;
   std::size_t count_{0};
 };

@@ -42,7 +42,7 @@ void Handpiece::take(int tool, double volume) noexcept {
 }
 
 double Handpiece::sharpness(int tool) const noexcept {
-  const Used& used = used_[static_cast<std::size_t>(tool)];
+  const UsedBurr& used = used_[static_cast<std::size_t>(tool)];
   return bone::sharpness(used.burr, used.removed);
 }
 

@@ -45,11 +45,11 @@ class Handpiece {
   double sharpness(int tool) const noexcept;
 
  private:
-  struct Used {
+  struct UsedBurr {
     BurrParameters burr;
     double removed;  // [m^3]
   };
-  std::vector<Used> used_;  // by tool
+  std::vector<UsedBurr> used_;  // by tool
   bool reversed_{false};
 };
 

@@ -162,7 +162,7 @@ void HeldBone::find_touching(const BoneWorld& world) noexcept {
   }
 }
 
-HeldBone::Followed HeldBone::follow(const BoneWorld& world, const Eigen::Isometry3d& hand,
+HeldBone::HeldStep HeldBone::follow(const BoneWorld& world, const Eigen::Isometry3d& hand,
                                     double dt) noexcept {
   if (!hand.matrix().allFinite()) {
     return {tool_.pose(), Vector3d::Zero(), 0};

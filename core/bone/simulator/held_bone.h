@@ -34,13 +34,13 @@ class HeldBone {
   /// @param hand  X_WT of the tool that holds it
   void begin(const Eigen::Isometry3d& hand) noexcept;
 
-  struct Followed {
+  struct HeldStep {
     Eigen::Isometry3d tool{Eigen::Isometry3d::Identity()};  // where a tool would be that holds it
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};         // on the hand, in W [N]
     int touching{0};                                        // samples in other bone
   };
-  /// One tick; the caller drags what is held to Followed::tool.
-  Followed follow(const BoneWorld& world, const Eigen::Isometry3d& hand, double dt) noexcept;
+  /// One tick; the caller drags what is held to HeldStep::tool.
+  HeldStep follow(const BoneWorld& world, const Eigen::Isometry3d& hand, double dt) noexcept;
 
  private:
   struct Sample {

@@ -251,7 +251,7 @@ void Simulator::carry(const SimulatorInput& input) noexcept {
       carried_.begin(pose);
     }
   } else {
-    const HeldBone::Followed followed = carried_.follow(world_, pose, input.dt);
+    const HeldBone::HeldStep followed = carried_.follow(world_, pose, input.dt);
     world_.drag(followed.tool);
     output_.force = followed.force;
     output_.immersed = followed.touching;

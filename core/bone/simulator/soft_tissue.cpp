@@ -234,7 +234,7 @@ Vector3d SoftTissue::press_all(Touch& touch, const Vector3d& c_B, double radius,
                                bool second) noexcept {
   Vector3d force = Vector3d::Zero();
   for (std::size_t i = 0; i < parts_.size(); ++i) {
-    Pressed pressed = press(parts_[i], touch.parts_[i], c_B, radius, sucks);
+    PressResult pressed = press(parts_[i], touch.parts_[i], c_B, radius, sucks);
     if (pressed.tears) {
       pressed.tear.by_second = second;
       tear(pressed.tear, radius);
@@ -253,8 +253,9 @@ Vector3d SoftTissue::feel(Touch& touch, const Vector3d& c_B, double radius,
   return force;
 }
 
-SoftTissue::Pressed SoftTissue::press(const Part& part, TouchedPart& touched, const Vector3d& c_B,
-                                      double radius, bool sucks) const noexcept {
+SoftTissue::PressResult SoftTissue::press(const Part& part, TouchedPart& touched,
+                                          const Vector3d& c_B, double radius,
+                                          bool sucks) const noexcept {
   SurfaceDepth::LocalTissue here{};
   touched.dent = {};
   const bool near = part.depth.at(c_B, here);

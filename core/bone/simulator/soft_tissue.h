@@ -143,13 +143,13 @@ class SoftTissue {
     double radius;
     std::uint8_t label;
   };
-  struct Pressed {
+  struct PressResult {
     Eigen::Vector3d force{Eigen::Vector3d::Zero()};
     bool tears{false};
     Tear tear{};
   };
-  Pressed press(const Part& part, TouchedPart& touched, const Eigen::Vector3d& c_B, double radius,
-                bool sucks) const noexcept;
+  PressResult press(const Part& part, TouchedPart& touched, const Eigen::Vector3d& c_B,
+                    double radius, bool sucks) const noexcept;
   bool holed(std::uint8_t label, const Eigen::Vector3d& place) const noexcept;
   Eigen::Vector3d press_all(Touch& touch, const Eigen::Vector3d& c_B, double radius, bool sucks,
                             bool second) noexcept;

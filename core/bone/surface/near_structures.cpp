@@ -30,8 +30,9 @@ NearStructures::NearStructures(std::shared_ptr<const StructureDepths> depths)
       }
     }
   }
-  std::stable_sort(around_.begin(), around_.end(),
-                   [](const Around& a, const Around& b) { return a.least < b.least; });
+  std::stable_sort(
+      around_.begin(), around_.end(),
+      [](const NeighbourBrick& a, const NeighbourBrick& b) { return a.least < b.least; });
 }
 
 int NearStructures::reach() const noexcept {
@@ -69,12 +70,12 @@ NearStructure NearStructures::at(const BoneVolume& volume, const Occupancy& occu
   }
   const double spacing = volume.grid().spacing;
   const double voxels = before.distance / spacing;
-  const Found bound{static_cast<int>(std::lround(voxels * voxels)), before.label};
+  const NearestVoxel bound{static_cast<int>(std::lround(voxels * voxels)), before.label};
   const double farthest = depths_->reach_in_voxels() * depths_->reach_in_voxels();
-  Found found{static_cast<int>(farthest) + 1, 0};
+  NearestVoxel found{static_cast<int>(farthest) + 1, 0};
   const Voxel home(voxel.x() / BoneVolume::kEdge, voxel.y() / BoneVolume::kEdge,
                    voxel.z() / BoneVolume::kEdge);
-  for (const Around& around : around_) {
+  for (const NeighbourBrick& around : around_) {
     if (around.least > found.squared) {
       break;
     }
@@ -93,7 +94,8 @@ NearStructure NearStructures::at(const BoneVolume& volume, const Occupancy& occu
 }
 
 void NearStructures::look_in(const BoneVolume& volume, const Occupancy& occupancy,
-                             std::int32_t brick, const Voxel& voxel, Found& found) const noexcept {
+                             std::int32_t brick, const Voxel& voxel,
+                             NearestVoxel& found) const noexcept {
   const Voxel from = voxel - volume.brick_origin(brick);
   const int aside = outside(from.x());
   const int nearest = aside * aside + outside(from.y()) * outside(from.y());
@@ -114,9 +116,9 @@ void NearStructures::look_in(const BoneVolume& volume, const Occupancy& occupanc
       const unsigned upto =
           from.x() < 0 ? 0U : 0xFFU >> std::max(0, BoneVolume::kEdge - 1 - from.x());
       const auto consider = [&](int x) {
-        const Found here{dyz + (from.x() - x) * (from.x() - x),
-                         volume.label(brick * BoneVolume::kBrickVoxels + x +
-                                      BoneVolume::kEdge * (y + BoneVolume::kEdge * z))};
+        const NearestVoxel here{dyz + (from.x() - x) * (from.x() - x),
+                                volume.label(brick * BoneVolume::kBrickVoxels + x +
+                                             BoneVolume::kEdge * (y + BoneVolume::kEdge * z))};
         const bool nearer = here.squared < found.squared;
         if (nearer || (here.squared == found.squared && here.label < found.label)) {
           found = here;

@@ -36,21 +36,21 @@ class NearStructures {
   int reach() const noexcept;  // in whole voxels, rounded up
 
  private:
-  struct Found {
+  struct NearestVoxel {
     int squared;  // distance in voxels
     std::uint8_t label;
   };
   void look_in(const BoneVolume& volume, const Occupancy& occupancy, std::int32_t brick,
-               const Voxel& voxel, Found& found) const noexcept;
+               const Voxel& voxel, NearestVoxel& found) const noexcept;
 
   std::shared_ptr<const StructureDepths> depths_;
   bool whole_{false};                      // the volume has all structures that the depths know
   std::vector<std::uint64_t> structures_;  // voxels that show, by brick and layer of z
-  struct Around {
+  struct NeighbourBrick {
     Voxel offset;  // in bricks
     int least;     // squared distance of voxels that lie so far apart
   };
-  std::vector<Around> around_;  // nearest first
+  std::vector<NeighbourBrick> around_;  // nearest first
 };
 
 }  // namespace haptrial::bone

@@ -215,7 +215,8 @@ Surface::MadeVertex Surface::vertex_at(const BoneVolume& volume, const Voxel& or
   const std::uint8_t nearest = nearest_corner(corners, offset);
   SurfaceVertex vertex = make_vertex(volume, cell, corners, offset, normal, nearest);
   if (mixed) {
-    const LabelMix::Other other = LabelMix::around(volume, field, origin, of_brick, vertex.label);
+    const LabelMix::OtherLabel other =
+        LabelMix::around(volume, field, origin, of_brick, vertex.label);
     vertex.other_label = other.label;
     vertex.other_share = other.share;
   }

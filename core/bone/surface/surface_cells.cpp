@@ -286,9 +286,9 @@ bool LabelMix::is_mixed(const BoneVolume& volume, const Voxel& origin) const noe
   return false;
 }
 
-LabelMix::Other LabelMix::around(const BoneVolume& volume, const CellField& field,
-                                 const Voxel& origin, const Voxel& of_brick,
-                                 std::uint8_t own) noexcept {
+LabelMix::OtherLabel LabelMix::around(const BoneVolume& volume, const CellField& field,
+                                      const Voxel& origin, const Voxel& of_brick,
+                                      std::uint8_t own) noexcept {
   constexpr std::array<int, 4> kWeights{1, 3, 3, 1};
   std::array<int, 256> weights{};
   int all = 0;

@@ -92,7 +92,7 @@ class CellField {
 /// The structure that borders on a vertex's own, for colours without the steps of the voxels.
 class LabelMix {
  public:
-  struct Other {
+  struct OtherLabel {
     std::uint8_t label{0};
     std::uint8_t share{0};  // of what is filled around the vertex; 255 is all
   };
@@ -106,8 +106,8 @@ class LabelMix {
   bool is_mixed(const BoneVolume& volume, const Voxel& origin) const noexcept;
   /// The other label that fills most of the 4 x 4 x 4 voxels around a cell, weighted 1, 3, 3, 1
   /// along each axis. @param own  label of the vertex
-  static Other around(const BoneVolume& volume, const CellField& field, const Voxel& origin,
-                      const Voxel& of_brick, std::uint8_t own) noexcept;
+  static OtherLabel around(const BoneVolume& volume, const CellField& field, const Voxel& origin,
+                           const Voxel& of_brick, std::uint8_t own) noexcept;
 
  private:
   static constexpr std::uint8_t kMixed = 255;  // no label: a model has fewer

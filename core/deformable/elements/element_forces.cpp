@@ -50,7 +50,7 @@ std::size_t ElementForces::add(const PaddedPoints& positions, PaddedPoints& forc
     double volume = 0.0;
     for (std::size_t t = first; t < end; ++t) {
       const Tet& tet = tets_[t];
-      Strained& now = room_[t - first];
+      Deformation& now = room_[t - first];
       const Vector3d origin = positions[to_place(tet.corners[0])];
       Matrix3d edges;
       for (int i = 0; i < 3; ++i) {
@@ -68,7 +68,7 @@ std::size_t ElementForces::add(const PaddedPoints& positions, PaddedPoints& forc
     const double pressure = patch.moduli.bulk * (volume / patch.volume - 1.0);
     for (std::size_t t = first; t < end; ++t) {
       const Tet& tet = tets_[t];
-      const Strained& now = room_[t - first];
+      const Deformation& now = room_[t - first];
       const double j = std::max(now.change, kLeastVolume), root = std::cbrt(j);
       const double form = patch.moduli.shear / (root * root);
       const double turn = pressure - form * now.gradient.squaredNorm() / (3.0 * j);

@@ -31,7 +31,7 @@ class ElementForces {
     Eigen::Matrix3d inverse;  // of the edges from its first corner, as columns, at rest [1/m]
     double volume;            // at rest [m³]
   };
-  struct Strained {
+  struct Deformation {
     Eigen::Matrix3d gradient, cofactor;
     double change;  // of volume: det F
   };
@@ -41,9 +41,9 @@ class ElementForces {
     Moduli moduli;
   };
 
-  std::vector<Tet> tets_;       // patch after patch
-  std::vector<Patch> patches_;  // and one that marks the end
-  std::vector<Strained> room_;  // of one patch
+  std::vector<Tet> tets_;          // patch after patch
+  std::vector<Patch> patches_;     // and one that marks the end
+  std::vector<Deformation> room_;  // of one patch
 };
 
 }  // namespace haptrial::deformable

@@ -41,7 +41,7 @@ class LocalContact {
   std::size_t forces(const LocalSurface& surface, std::span<VertexForce> to) const noexcept;
 
  private:
-  struct Chosen {
+  struct ChosenSample {
     std::size_t place{};
     Eigen::Vector3d normal{Eigen::Vector3d::Zero()};
   };
@@ -52,7 +52,7 @@ class LocalContact {
   double across(const LocalSurface& surface) const noexcept;
   void respond(const LocalSurface& surface) noexcept;
   void find_depth(const LocalSurface& surface, const Eigen::Vector3d& tool) noexcept;
-  const Chosen& chosen(Eigen::Index i) const noexcept {
+  const ChosenSample& chosen(Eigen::Index i) const noexcept {
     return chosen_[static_cast<std::size_t>(i)];
   }
   Eigen::Vector3d force_on(Eigen::Index i) const noexcept {
@@ -62,7 +62,7 @@ class LocalContact {
   TouchOptions options_;
   std::array<Eigen::Vector3d, LocalSurface::kMost> moved_;  // by normal forces of the last tick [m]
   std::array<bool, LocalSurface::kMost> was_pressed_{};
-  std::array<Chosen, LocalSurface::kMost> chosen_;
+  std::array<ChosenSample, LocalSurface::kMost> chosen_;
   PressedPlaces problem_;
   PressedPlaces::Vector pressed_;  // of the chosen [N]
   double pressure_{0.0};           // their sum

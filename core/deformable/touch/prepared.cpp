@@ -35,7 +35,7 @@ struct AnyMesh {
 
 /// The first of the meshes that are alike, so that the servo thread need not compare them.
 SharedHapticMesh first_alike(const SharedHapticMesh& mesh) {
-  static Kept<AnyMesh, HapticMesh> meshes(kMostPrepared);
+  static SharedCache<AnyMesh, HapticMesh> meshes(kMostPrepared);
   return meshes.get({mesh}, [&] { return mesh; });
 }
 

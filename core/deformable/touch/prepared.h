@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "core/base/kept.h"
+#include "core/base/shared_cache.h"
 #include "core/deformable/touch/compliance.h"
 #include "core/deformable/touch/haptic_mesh.h"
 
@@ -22,8 +22,8 @@ struct TissueMesh {
 
 /// Bodies of tissues, kMostPrepared of them.
 template <class Tissue, class Body>
-struct PreparedBodies : Kept<TissueMesh<Tissue>, Body> {
-  PreparedBodies() : Kept<TissueMesh<Tissue>, Body>(kMostPrepared) {}
+struct PreparedBodies : SharedCache<TissueMesh<Tissue>, Body> {
+  PreparedBodies() : SharedCache<TissueMesh<Tissue>, Body>(kMostPrepared) {}
 };
 
 /// The compliance of a body of a tissue, made when it is first asked for and shared by all who ask

@@ -101,12 +101,12 @@ class SlowBody {
   MovingTouch touch_;
   std::uint64_t window_{0};  // number of the last one
 
-  struct Near {
+  struct NearSample {
     double distance;
     std::int32_t sample;
-    auto operator<=>(const Near&) const = default;
+    auto operator<=>(const NearSample&) const = default;
   };
-  std::vector<Near> near_;  // (samples)
+  std::vector<NearSample> near_;  // (samples)
   std::size_t near_count_{0};
   std::vector<std::uint8_t> pressed_;     // by sample, on the last tick
   std::vector<Eigen::Vector3d> free_;     // by sample, when it was described last [m]

@@ -34,26 +34,26 @@ Products products(const std::vector<double>& x, const std::vector<double>& y) {
 
 }  // namespace
 
-Listed::Listed(const std::vector<double>& order, const char* who) : who_(who) {
+ListedLevels::ListedLevels(const std::vector<double>& order, const char* who) : who_(who) {
   order_.reserve(order.size());
   for (double level : order) {
     order_.push_back({level});
   }
 }
 
-const Level& Listed::next() const {
+const Level& ListedLevels::next() const {
   checks::require_running(!finished(), who_);
   return order_[outcomes_.size()];
 }
 
-void Listed::report(double answer, const Level& applied) {
+void ListedLevels::report(double answer, const Level& applied) {
   checks::require_running(!finished(), who_);
   checks::single_level(applied, who_);
   check(answer);
   outcomes_.push_back({answer, applied});
 }
 
-void Listed::postpone() {
+void ListedLevels::postpone() {
   checks::require_running(!finished(), who_);
   const auto present = order_.begin() + static_cast<std::ptrdiff_t>(outcomes_.size());
   std::rotate(present, present + 1, order_.end());
@@ -61,7 +61,8 @@ void Listed::postpone() {
 
 ConstantStimuli::ConstantStimuli(const ListParameters& list, std::uint64_t seed,
                                  std::string_view name, std::size_t outcomes)
-    : Listed(shuffled(list, seed, name, kConstant), kConstant), number_of_outcomes_(outcomes) {
+    : ListedLevels(shuffled(list, seed, name, kConstant), kConstant),
+      number_of_outcomes_(outcomes) {
   checks::require(outcomes >= 2, kConstant, "outcomes must be at least 2");
 }
 
@@ -71,7 +72,7 @@ void ConstantStimuli::check(double answer) const {
 
 MagnitudeEstimation::MagnitudeEstimation(const ListParameters& list, std::optional<double> modulus,
                                          std::uint64_t seed, std::string_view name)
-    : Listed(shuffled(list, seed, name, kMagnitude), kMagnitude), modulus_(modulus) {
+    : ListedLevels(shuffled(list, seed, name, kMagnitude), kMagnitude), modulus_(modulus) {
   checks::require(*std::min_element(list.levels.begin(), list.levels.end()) > 0.0, kMagnitude,
                   "levels must be above 0");
   checks::require(!modulus || (*modulus > 0.0 && std::isfinite(*modulus)), kMagnitude,

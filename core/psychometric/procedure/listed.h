@@ -6,7 +6,7 @@
 namespace haptrial::psychometric {
 
 /// A procedure whose levels are settled before the first trial; one outcome a level.
-class Listed : public Procedure {
+class ListedLevels : public Procedure {
  public:
   const Level& next() const override;
   void report(double answer, const Level& applied) override;
@@ -18,7 +18,7 @@ class Listed : public Procedure {
   std::size_t trials() const noexcept { return order_.size(); }
 
  protected:
-  Listed(const std::vector<double>& order, const char* who);
+  ListedLevels(const std::vector<double>& order, const char* who);
   /// @throws std::invalid_argument when this procedure has no such answer.
   virtual void check(double answer) const = 0;
   const char* who() const noexcept { return who_; }
@@ -30,7 +30,7 @@ class Listed : public Procedure {
 };
 
 /// Constant stimuli: each level so many times. There is no estimate but a fit of the outcomes.
-class ConstantStimuli final : public Listed {
+class ConstantStimuli final : public ListedLevels {
  public:
   /// @param outcomes  how many there are, at least 2
   /// @throws std::invalid_argument naming the parameter that breaks its bound.
@@ -47,7 +47,7 @@ class ConstantStimuli final : public Listed {
 /// the exponent of Stevens' power law, the slope of log answer over log level, and its standard
 /// error by least squares. A modulus is the number that the participant was told to give to a
 /// standard level; answers scale with it, so that the exponent does not depend on it.
-class MagnitudeEstimation final : public Listed {
+class MagnitudeEstimation final : public ListedLevels {
  public:
   /// @param list  levels above 0
   /// @throws std::invalid_argument naming the parameter that breaks its bound.

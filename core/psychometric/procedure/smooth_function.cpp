@@ -124,7 +124,7 @@ SmoothBelief::SmoothBelief(const Eigen::VectorXd& deviations)
 SmoothBelief::Visit SmoothBelief::visit(std::size_t fact, const Eigen::VectorXd& row,
                                         const ProbitLink& link) {
   facts_.resize(std::max(facts_.size(), fact + 1));
-  Fact& old = facts_[fact];
+  NormalFactor& old = facts_[fact];
   const Eigen::VectorXd reach = covariance_ * row;
   const double variance = row.dot(reach);
   const double without = 1.0 - old.precision * variance;
@@ -143,7 +143,7 @@ SmoothBelief::Visit SmoothBelief::visit(std::size_t fact, const Eigen::VectorXd&
   if (rest < kLeast) {
     return {probability};
   }
-  const Fact now{bend / rest, (pull + m * bend) / rest};
+  const NormalFactor now{bend / rest, (pull + m * bend) / rest};
   const double added = now.precision - old.precision;
   const double grown = 1.0 + added * variance;
   if (grown < kLeast) {

@@ -71,12 +71,12 @@ class SmoothBelief {
 
  private:
   /// A fact's share of the distribution, as if it were the normal of this precision and mean.
-  struct Fact {
+  struct NormalFactor {
     double precision{0.0}, shift{0.0};
   };
   Eigen::VectorXd mean_;
   Eigen::MatrixXd covariance_;
-  std::vector<Fact> facts_;
+  std::vector<NormalFactor> facts_;
 };
 
 }  // namespace haptrial::psychometric

@@ -131,7 +131,7 @@ std::vector<Eigen::Index> ThresholdSurface::doubtful() const {
 
 /// Expected doubt at the judged levels after an answer to `level`, by one belief.
 /// @param shared  (judged) covariances with f at `level`
-double ThresholdSurface::doubt_after(const Foretold& by, Eigen::Index level,
+double ThresholdSurface::doubt_after(const PredictedLevels& by, Eigen::Index level,
                                      const Eigen::ArrayXd& shared) const {
   const Eigen::ArrayXd mean = by.mean(judged_), variance = by.variance(judged_);
   double sum = 0.0;

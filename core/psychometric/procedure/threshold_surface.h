@@ -36,7 +36,7 @@ class ThresholdSurface final : public Procedure {
 
  private:
   /// Figures of a belief for every level that may come next.
-  struct Foretold {
+  struct PredictedLevels {
     Eigen::VectorXd mean, variance;  // of f at the levels
   };
   void list_levels();
@@ -45,7 +45,8 @@ class ThresholdSurface final : public Procedure {
   /// How unsure each level's side of the threshold is, 0 to 1/4.
   Eigen::VectorXd doubt() const;
   std::vector<Eigen::Index> doubtful() const;
-  double doubt_after(const Foretold& by, Eigen::Index level, const Eigen::ArrayXd& shared) const;
+  double doubt_after(const PredictedLevels& by, Eigen::Index level,
+                     const Eigen::ArrayXd& shared) const;
   std::string name_of(const Level& others) const;
 
   SurfacePosterior posterior_;
@@ -53,7 +54,7 @@ class ThresholdSurface final : public Procedure {
   Eigen::MatrixXd rows_;              // (levels x terms)
   std::vector<Eigen::Index> judged_;  // levels by which a choice is judged
   Eigen::MatrixXd judged_rows_;
-  std::vector<Foretold> foretold_;  // by each belief of the posterior
+  std::vector<PredictedLevels> foretold_;  // by each belief of the posterior
   Level next_;
   int trials_{0};
 };

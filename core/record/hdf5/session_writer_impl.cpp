@@ -121,7 +121,7 @@ std::vector<SessionWriter::Impl::Part> SessionWriter::Impl::tables() {
                         {&attributes, &attributes_table().schema(), false},
                         {&runs, &runs_table().schema(), false},
                         {&begun, &begun_table().schema(), false}};
-  for (Own& each : own) {
+  for (ProtocolTable& each : own) {
     all.push_back({&each.writer, &each.table->schema(), each.table->of() == RowsOf::kEachTick,
                    each.table->dense()});
   }
@@ -133,7 +133,7 @@ int SessionWriter::Impl::level_of(const Part& part) const {
 }
 
 TableWriter& SessionWriter::Impl::protocol_table(const TableDescription& table) {
-  for (Own& each : own) {
+  for (ProtocolTable& each : own) {
     if (each.table->name() == table.name()) {
       return *each.writer;
     }
@@ -168,14 +168,14 @@ void SessionWriter::Impl::give_up(const std::string& why) {
 /// the process is killed.
 void SessionWriter::Impl::write_before_trials() {
   samples->write_unfinished();
-  for (Own& each : own) {
+  for (ProtocolTable& each : own) {
     each.writer->write_unfinished();
   }
   h5::flush(file);
 }
 
 void SessionWriter::Impl::write_own() {
-  for (Own& each : own) {
+  for (ProtocolTable& each : own) {
     if (each.table->of() != RowsOf::kEachTick) {
       each.writer->write_unfinished();
     }

@@ -92,14 +92,14 @@ struct SessionWriter::Impl {
   DiskSpace space;
   std::optional<TableWriter> samples, frames, trials, events, stimuli, timing, attributes;
   std::optional<TableWriter> runs, begun;
-  struct Own {
+  struct ProtocolTable {
     const TableDescription* table;
     std::optional<TableWriter> writer;
   };
-  std::vector<Own> own;           // tables of the protocol
-  TimingSummary earlier;          // what the runs before a resume counted
-  RunRow run;                     // this one
-  std::optional<RunRow> run_row;  // the last in the file or on its way there
+  std::vector<ProtocolTable> own;  // tables of the protocol
+  TimingSummary earlier;           // what the runs before a resume counted
+  RunRow run;                      // this one
+  std::optional<RunRow> run_row;   // the last in the file or on its way there
   bool resumed{false};
   bool has_timing{false};
   bool finished{false};

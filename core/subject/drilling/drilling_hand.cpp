@@ -99,7 +99,7 @@ DrillingHand::DrillingHand(const DrillingHandParameters& parameters, HandModel& 
       across_(parameters.inward.cross(parameters.along)),
       lines_(1 + static_cast<int>(parameters.height / parameters.line)) {}
 
-void DrillingHand::begin(Doing doing) noexcept {
+void DrillingHand::begin(Activity doing) noexcept {
   doing_ = doing;
   time_ = 0.0;
 }
@@ -118,11 +118,11 @@ void DrillingHand::next_line() noexcept {
   const bool sucks = parameters_.next_button >= 0 && parameters_.previous_button >= 0;
   if (sucks && strokes_ % parameters_.strokes_to_suction == 0) {
     wanted_tool_ = parameters_.suction_tool;
-    begin(Doing::kChange);
+    begin(Activity::kChange);
   } else if (line_ == 0 && parameters_.look_button >= 0) {
-    begin(Doing::kLook);
+    begin(Activity::kLook);
   } else {
-    begin(Doing::kReach);
+    begin(Activity::kReach);
   }
 }
 
@@ -132,7 +132,7 @@ void DrillingHand::observe(const stimulus::Shown& shown, const stimulus::Forces&
   if (seen == nullptr || !seen->shown) {
     hand_.command({0.0, false, noise_.tremor()});
     device_.hold(0, 0.0, Eigen::Quaterniond::Identity());
-    begin(Doing::kReach);
+    begin(Activity::kReach);
     tip_known_ = false;
     return;
   }
@@ -153,51 +153,51 @@ void DrillingHand::decide(const bone::DrillingView& seen, const Eigen::Vector3d&
   const Eigen::Vector3d off = tip - line_start();
   const double sideways = (off - off.dot(p.inward) * p.inward).norm();
   switch (doing_) {
-    case Doing::kReach:
+    case Activity::kReach:
       if (sideways < kNear && time_ > kPressing) {
-        begin(Doing::kDescend);
+        begin(Activity::kDescend);
       } else if (time_ > kWaitForBone) {  // bone is in the way: over it to the next
         higher_ = std::min(higher_ + p.hover, kHighest);
         next_line();
       }
       break;
-    case Doing::kDescend:
+    case Activity::kDescend:
       if (seen.contact) {
         if (!surface_known_) {
           surface_known_ = true;
           surface_ = tip.dot(p.inward);
         }
         target_ = line_start();
-        begin(Doing::kStroke);
+        begin(Activity::kStroke);
       } else if (time_ > kWaitForBone ||
                  (surface_known_ && tip.dot(p.inward) > surface_ + p.depth)) {
-        begin(Doing::kLift);
+        begin(Activity::kLift);
       }
       break;
-    case Doing::kStroke:
+    case Activity::kStroke:
       if (time_ > p.width / p.speed) {
-        begin(Doing::kLift);
+        begin(Activity::kLift);
       }
       break;
-    case Doing::kLift:
+    case Activity::kLift:
       if (time_ > p.hover / kBetweenStrokes + kPressing) {
         next_line();
       }
       break;
-    case Doing::kChange:
+    case Activity::kChange:
       if (seen.tool == wanted_tool_) {
-        begin(wanted_tool_ == p.suction_tool ? Doing::kSuck : Doing::kReach);
+        begin(wanted_tool_ == p.suction_tool ? Activity::kSuck : Activity::kReach);
       }
       break;
-    case Doing::kSuck:
+    case Activity::kSuck:
       if (time_ > p.suction_time) {
         wanted_tool_ = 0;
-        begin(Doing::kChange);
+        begin(Activity::kChange);
       }
       break;
-    case Doing::kLook:
+    case Activity::kLook:
       if (time_ > kLookTime) {
-        begin(Doing::kReach);
+        begin(Activity::kReach);
       }
       break;
   }
@@ -218,21 +218,21 @@ Eigen::Vector3d DrillingHand::push(const bone::DrillingView& seen, const Eigen::
   const double fall = velocity.dot(p.inward);
   const auto keep = [&](double wanted) { return kStiffness * (wanted - height) - kDamping * fall; };
   switch (doing_) {
-    case Doing::kStroke: {
+    case Activity::kStroke: {
       const double gone = std::min(p.width, p.speed * time_);
       goal += (back_ ? -gone : gone) * p.along;
       const double room = std::clamp((floor - height) / 0.0005, 0.0, 1.0);
       inward = noise_.press(p.press) * room - kDamping * fall;
       break;
     }
-    case Doing::kDescend:
+    case Activity::kDescend:
       inward = noise_.press(0.0) + kDamping * (kDescent - fall) * (seen.contact ? 0.0 : 3.0);
       break;
-    case Doing::kSuck:
+    case Activity::kSuck:
       goal = p.start;
       inward = keep(surface_known_ ? surface_ + 0.5 * p.depth : above);
       break;
-    case Doing::kLook:
+    case Activity::kLook:
       goal += 0.004 * std::sin(8.0 * time_) * across_;
       inward = keep(above);
       break;
@@ -253,16 +253,16 @@ std::uint32_t DrillingHand::fingers(const bone::DrillingView& seen) const noexce
   const DrillingHandParameters& p = parameters_;
   const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
   switch (doing_) {
-    case Doing::kDescend:
-    case Doing::kStroke:
-    case Doing::kSuck:
+    case Activity::kDescend:
+    case Activity::kStroke:
+    case Activity::kSuck:
       return held(p.power_button);
-    case Doing::kChange:
+    case Activity::kChange:
       if (seen.tool == wanted_tool_ || !down) {
         return 0;
       }
       return held(seen.tool < wanted_tool_ ? p.next_button : p.previous_button);
-    case Doing::kLook:
+    case Activity::kLook:
       return held(p.look_button);
     default:
       return 0;

@@ -64,8 +64,8 @@ class DrillingHand final : public stimulus::Observer {
   int strokes() const noexcept { return strokes_; }
 
  private:
-  enum class Doing { kReach, kDescend, kStroke, kLift, kChange, kSuck, kLook };
-  void begin(Doing doing) noexcept;
+  enum class Activity { kReach, kDescend, kStroke, kLift, kChange, kSuck, kLook };
+  void begin(Activity doing) noexcept;
   void next_line() noexcept;
   Eigen::Vector3d line_start() const noexcept;
   void decide(const bone::DrillingView& seen, const Eigen::Vector3d& tip) noexcept;
@@ -81,7 +81,7 @@ class DrillingHand final : public stimulus::Observer {
   Eigen::Vector3d across_;
   int lines_;
 
-  Doing doing_{Doing::kReach};
+  Activity doing_{Activity::kReach};
   double time_{0.0};  // in it [s]
   int line_{0};
   bool back_{false};  // the stroke runs against `along`

@@ -110,7 +110,7 @@ DrillingSurgeon::DrillingSurgeon(const SurgeonParameters& parameters,
   }
 }
 
-void DrillingSurgeon::begin(Doing doing) noexcept {
+void DrillingSurgeon::begin(Activity doing) noexcept {
   doing_ = doing;
   time_ = 0.0;
 }
@@ -151,7 +151,8 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
           : Eigen::Vector3d::Zero();
   last_ = place;
   place_known_ = true;
-  if (view.power && (doing_ == Doing::kDescend || doing_ == Doing::kStrokes) && !strokes_.under) {
+  if (view.power && (doing_ == Activity::kDescend || doing_ == Activity::kStrokes) &&
+      !strokes_.under) {
     now().memory.sweep(place);
   }
   listen(view, place, dt);
@@ -168,24 +169,24 @@ void DrillingSurgeon::observe(const stimulus::Shown& shown, const stimulus::Forc
 /// Off the bone when the monitor has sounded for as long as it takes to react.
 void DrillingSurgeon::listen(const bone::DrillingView& seen, const Eigen::Vector3d& place,
                              double dt) noexcept {
-  const bool works = doing_ == Doing::kDescend || doing_ == Doing::kStrokes;
+  const bool works = doing_ == Activity::kDescend || doing_ == Activity::kStrokes;
   heard_ = works && (seen.tone || heard_ > 0.0) ? heard_ + dt : 0.0;
   if (heard_ < parameters_.reaction) {
     return;
   }
   heard_ = 0.0;
-  if (doing_ == Doing::kStrokes) {
+  if (doing_ == Activity::kStrokes) {
     now().memory.end_strokes(strokes_);
   }
   lift_to_ = place.z() - kWithdrawn;
-  begin(Doing::kWithdraw);
+  begin(Activity::kWithdraw);
 }
 
 /// Drilling ends if the tip is too fast, or hidden; with less force it goes on.
 void DrillingSurgeon::heed(const bone::DrillingView& seen, double dt) noexcept {
-  if (now().heeding.notice(seen.hints, dt) && doing_ == Doing::kStrokes) {
+  if (now().heeding.notice(seen.hints, dt) && doing_ == Activity::kStrokes) {
     now().memory.end_strokes(strokes_);
-    begin(Doing::kPause);
+    begin(Activity::kPause);
   }
 }
 
@@ -226,9 +227,9 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
     if (p.careful && !fine_) {
       fine_ = true;
       p.memory.begin_burr(p.fine, parameters_.fine.radius);
-      begin(Doing::kChange);
+      begin(Activity::kChange);
     } else {
-      begin(Doing::kFinish);
+      begin(Activity::kFinish);
     }
     return;
   }
@@ -245,7 +246,7 @@ void DrillingSurgeon::next_strokes(const bone::DrillingView& seen) noexcept {
   if (looks_) {
     lift_to_ = std::min(lift_to_, p.memory.opening().z() - kRoomToLook);
   }
-  begin(Doing::kLift);
+  begin(Activity::kLift);
 }
 
 /// Ends strokes under an edge before the burr would enter a margin, if the structures are where
@@ -289,55 +290,55 @@ void DrillingSurgeon::decide(const bone::DrillingView& seen,
                              const Eigen::Vector3d& place) noexcept {
   Procedure& p = now();
   switch (doing_) {
-    case Doing::kLift:
+    case Activity::kLift:
       if (place.z() < lift_to_ + kThere) {
-        begin(looks_ ? Doing::kLook : Doing::kTravel);
+        begin(looks_ ? Activity::kLook : Activity::kTravel);
       }
       break;
-    case Doing::kTravel:
+    case Activity::kTravel:
       if ((place.head<2>() - strokes_.from).norm() < kThere || time_ > kLookLonger) {
-        begin(Doing::kDescend);
+        begin(Activity::kDescend);
       }
       break;
-    case Doing::kDescend:
+    case Activity::kDescend:
       if (seen.contact || place.z() > depth_limit(place) - 0.3e-3 || time_ > kLookLonger) {
         stroke_depth_ = place.z();
         idle_ = 0.0;
         ++series_;
         stroke_rate_ = pace(place);
-        begin(Doing::kStrokes);
+        begin(Activity::kStrokes);
       }
       break;
-    case Doing::kStrokes:
+    case Activity::kStrokes:
       decide_strokes(seen, place);
       break;
-    case Doing::kPause:
+    case Activity::kPause:
       if (time_ > p.skill.pause) {
         next_strokes(seen);
       }
       break;
-    case Doing::kLook: {
+    case Activity::kLook: {
       const Eigen::Vector3d from = (seen.eye - seen.target).normalized();
       const bool low = place.z() > p.memory.opening().z() - 2.0 * parameters_.rough.radius;
       if (std::acos(std::clamp(look_.dot(from), -1.0, 1.0)) < kSeenWell || time_ > kLookLonger ||
           low || (seen.tip * scale_).norm() > kArm) {
         looks_ = false;
         lift_to_ = p.memory.over(place.head<2>(), strokes_.from) - kHover;
-        begin(Doing::kLift);
+        begin(Activity::kLift);
       }
       break;
     }
-    case Doing::kChange:
+    case Activity::kChange:
       if (seen.tool == burr().tool && place.z() < lift_to_ + kThere) {
         next_strokes(seen);
       }
       break;
-    case Doing::kWithdraw:
+    case Activity::kWithdraw:
       if (time_ > kQuiet && !seen.tone) {
         next_strokes(seen);
       }
       break;
-    case Doing::kFinish:
+    case Activity::kFinish:
       break;
   }
 }
@@ -349,7 +350,7 @@ void DrillingSurgeon::decide_strokes(const bone::DrillingView& seen,
   idle_ = seen.contact && !at_bottom ? 0.0 : idle_ + 1e-3;
   if (time_ * stroke_rate_ > sweeps || (!strokes_.under && idle_ * stroke_rate_ > kPatience)) {
     now().memory.end_strokes(strokes_);
-    begin(Doing::kPause);
+    begin(Activity::kPause);
   }
 }
 
@@ -385,28 +386,28 @@ void DrillingSurgeon::move_goal(const bone::DrillingView& seen, double dt) noexc
     return Eigen::Vector3d(uv.x(), uv.y(), w);
   };
   switch (doing_) {
-    case Doing::kLift:
-    case Doing::kChange:
-    case Doing::kWithdraw:
-    case Doing::kFinish:
+    case Activity::kLift:
+    case Activity::kChange:
+    case Activity::kWithdraw:
+    case Activity::kFinish:
       go_to(at(goal_.head<2>(), lift_to_), kTravel, dt);
       break;
-    case Doing::kTravel:
+    case Activity::kTravel:
       go_to(at(strokes_.from, lift_to_), kTravel, dt);
       break;
-    case Doing::kDescend: {
+    case Activity::kDescend: {
       const bool near = last_.z() > now().memory.touch(strokes_.from) - kHover;
       const double depth = std::min(depth_limit(last_), last_.z() + 2e-3);
       go_to(at(strokes_.from, depth), near ? kOnto : kDown, dt);
       break;
     }
-    case Doing::kStrokes:
+    case Activity::kStrokes:
       follow_strokes();
       break;
-    case Doing::kPause:
+    case Activity::kPause:
       go_to(at(goal_.head<2>(), last_.z()), kTravel, dt);
       break;
-    case Doing::kLook: {
+    case Activity::kLook: {
       const Eigen::Vector3d back = (seen.eye - seen.target).normalized();
       const Eigen::Vector3d right = seen.up.cross(back).normalized();
       const Eigen::Vector3d error = look_ - back;
@@ -458,7 +459,7 @@ double DrillingSurgeon::depth_limit(const Eigen::Vector3d& place) const noexcept
   }
   // Beside the bone there is nothing to stop at.
   const double begun =
-      doing_ == Doing::kStrokes ? stroke_depth_ : p.memory.touch(strokes_.from) + kHover;
+      doing_ == Activity::kStrokes ? stroke_depth_ : p.memory.touch(strokes_.from) + kHover;
   // A wall is met before the burr is in it.
   const Eigen::Vector2d soon = place.head<2>() + kAhead * velocity_.head<2>();
   const double limit = std::min(p.memory.limit(place.head<2>()), p.memory.limit(soon));
@@ -470,7 +471,7 @@ Eigen::Vector3d DrillingSurgeon::push(const bone::DrillingView& seen,
   const Eigen::Vector3d follow = kStiffness * scale_ * (goal_ - place) +
                                  kDamping * scale_ * (goal_velocity_ - velocity_) +
                                  kDrag * scale_ * goal_velocity_;
-  if (doing_ != Doing::kStrokes) {
+  if (doing_ != Activity::kStrokes) {
     return saturated(follow, kStrongest);
   }
   const double room = depth_limit(place) - place.z();
@@ -497,17 +498,17 @@ std::uint32_t DrillingSurgeon::fingers(const bone::DrillingView& seen) const noe
   const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
   const SurgeonParameters& p = parameters_;
   switch (doing_) {
-    case Doing::kDescend:
-    case Doing::kStrokes:
+    case Activity::kDescend:
+    case Activity::kStrokes:
       return seen.tool == burr().tool ? held(p.power_button) : 0U;
-    case Doing::kLook:
+    case Activity::kLook:
       return held(p.look_button);
-    case Doing::kChange:
+    case Activity::kChange:
       if (seen.tool == burr().tool || !down) {
         return 0;
       }
       return held(seen.tool < burr().tool ? p.next_button : p.previous_button);
-    case Doing::kFinish:
+    case Activity::kFinish:
       return down ? held(p.finish_button) : 0U;
     default:
       return 0;

@@ -80,7 +80,7 @@ class DrillingSurgeon final : public stimulus::Observer {
     HintHeeding heeding;
     DrillingMemory memory;
   };
-  enum class Doing {
+  enum class Activity {
     kLift,
     kTravel,
     kDescend,
@@ -94,7 +94,7 @@ class DrillingSurgeon final : public stimulus::Observer {
 
   static Procedure plan(const SurgeonParameters& p, std::shared_ptr<const DrillingChart> chart,
                         std::uint64_t seed, int number, double step);
-  void begin(Doing doing) noexcept;
+  void begin(Activity doing) noexcept;
   void begin_procedure() noexcept;
   void listen(const bone::DrillingView& seen, const Eigen::Vector3d& place, double dt) noexcept;
   void heed(const bone::DrillingView& seen, double dt) noexcept;
@@ -127,7 +127,7 @@ class DrillingSurgeon final : public stimulus::Observer {
   std::size_t at_{0};
   int begun_{0};  // procedures
   bool works_{false};
-  Doing doing_{Doing::kLift};
+  Activity doing_{Activity::kLift};
   double time_{0.0};  // in it [s]
   bool fine_{false};
   std::uint64_t series_{0};

@@ -157,7 +157,7 @@ OsteotomyHand::OsteotomyHand(const OsteotomyHandParameters& parameters, const Fr
   target_ = acts_.front().goal;
 }
 
-void OsteotomyHand::add(Act act, const Isometry3d& goal) {
+void OsteotomyHand::add(ToolAction act, const Isometry3d& goal) {
   act.goal = goal;
   acts_.push_back(act);
 }
@@ -172,12 +172,13 @@ void OsteotomyHand::plan_cuts(const FragmentPlan& plan, const OsteotomyTools& to
     const Isometry3d over =
         pose_with(p.from + (cuts > 1 ? cut / (cuts - 1.0) : 0.5) * line, across, -p.inward);
     const Isometry3d out = shifted(over, -kOver * p.inward);
-    Act reach{.tool = tools.saw};
+    ToolAction reach{.tool = tools.saw};
     add(reach, out);
-    Act saw{.tool = tools.saw, .speed = kFeed, .strength = p.press, .most = 10.0, .power = true};
+    ToolAction saw{
+        .tool = tools.saw, .speed = kFeed, .strength = p.press, .most = 10.0, .power = true};
     saw.depth = (p.depth + over.translation().dot(p.inward));
     add(saw, shifted(over, (p.depth + kThrough) * p.inward));
-    Act back{.tool = tools.saw, .speed = kWithSaw, .power = true};
+    ToolAction back{.tool = tools.saw, .speed = kWithSaw, .power = true};
     add(back, out);
   }
 }
@@ -215,7 +216,7 @@ void OsteotomyHand::plan_plate(const OsteotomyTools& tools) {
   add({.tool = tools.screw, .least = 10.0, .most = 10.0, .button = p.finish_button}, end);
 }
 
-bool OsteotomyHand::is_done(const Act& act, const Vector3d& tip) const noexcept {
+bool OsteotomyHand::is_done(const ToolAction& act, const Vector3d& tip) const noexcept {
   if (act.depth != 0.0) {
     return tip.dot(parameters_.inward) >= act.depth || time_ > act.most;
   }
@@ -223,7 +224,7 @@ bool OsteotomyHand::is_done(const Act& act, const Vector3d& tip) const noexcept 
 }
 
 /// Leads the target to the goal at the act's speed.
-void OsteotomyHand::approach(const Act& act, double dt) noexcept {
+void OsteotomyHand::approach(const ToolAction& act, double dt) noexcept {
   const Vector3d way = act.goal.translation() - target_.translation();
   const double length = way.norm();
   const double most = act.speed * dt;
@@ -245,7 +246,7 @@ void OsteotomyHand::observe(const stimulus::Shown& shown, const stimulus::Forces
     begun_ = false;
     return;
   }
-  const Act& act = acts_[at_];
+  const ToolAction& act = acts_[at_];
   const bool has_tool = seen->tool == act.tool;
   if (has_tool) {
     approach(act, dt);
@@ -274,7 +275,7 @@ void OsteotomyHand::observe(const stimulus::Shown& shown, const stimulus::Forces
   }
 }
 
-std::uint32_t OsteotomyHand::fingers(const Act& act,
+std::uint32_t OsteotomyHand::fingers(const ToolAction& act,
                                      const bone::DrillingView& seen) const noexcept {
   const bool down = std::fmod(time_, 2.0 * kPressing) < kPressing;
   if (seen.tool != act.tool) {

@@ -82,7 +82,7 @@ class OsteotomyHand final : public stimulus::Observer {
 
  private:
   /// One thing to do with one tool.
-  struct Act {
+  struct ToolAction {
     int tool{0};
     Eigen::Isometry3d goal{Eigen::Isometry3d::Identity()};  // of the tool, in the scene
     double speed{0.05};                                     // of the way there [m/s]
@@ -96,17 +96,17 @@ class OsteotomyHand final : public stimulus::Observer {
   void plan_cuts(const FragmentPlan& plan, const OsteotomyTools& tools);
   void plan_move(const FragmentPlan& plan, const OsteotomyTools& tools);
   void plan_plate(const OsteotomyTools& tools);
-  void add(Act act, const Eigen::Isometry3d& goal);
-  bool is_done(const Act& act, const Eigen::Vector3d& tip) const noexcept;
-  void approach(const Act& act, double dt) noexcept;
-  std::uint32_t fingers(const Act& act, const bone::DrillingView& seen) const noexcept;
+  void add(ToolAction act, const Eigen::Isometry3d& goal);
+  bool is_done(const ToolAction& act, const Eigen::Vector3d& tip) const noexcept;
+  void approach(const ToolAction& act, double dt) noexcept;
+  std::uint32_t fingers(const ToolAction& act, const bone::DrillingView& seen) const noexcept;
 
   OsteotomyHandParameters parameters_;
   HandModel& hand_;
   device::VirtualDevice& device_;
   HandFrame frame_;
   MotorNoise noise_;
-  std::vector<Act> acts_;
+  std::vector<ToolAction> acts_;
   std::size_t at_{0};
   double time_{0.0};        // in the act [s]
   double time_there_{0.0};  // at its goal [s]

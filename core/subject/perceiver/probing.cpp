@@ -114,17 +114,18 @@ void ExplorationController::begin(const Probe& probe, const PointState& hand) no
   }
 }
 
-ExplorationController::Aim ExplorationController::aim(const Rest&, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Rest&, const HandSensation&) noexcept {
   return {};
 }
 
-ExplorationController::Aim ExplorationController::aim(const Hold&, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Hold&, const HandSensation&) noexcept {
   Aim aim;
   aim.keeps_place = true;
   return aim;
 }
 
-ExplorationController::Aim ExplorationController::aim(const Press& press, const Now& now) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Press& press,
+                                                      const HandSensation& now) noexcept {
   Aim aim;
   aim.free = press.direction.normalized();
   aim.push = press_to(press.force * smooth_step(time_ / press.rise).s, press.travel, aim.free,
@@ -133,7 +134,7 @@ ExplorationController::Aim ExplorationController::aim(const Press& press, const 
 }
 
 ExplorationController::Aim ExplorationController::aim(const Stroke& stroke,
-                                                      const Now& now) noexcept {
+                                                      const HandSensation& now) noexcept {
   Aim aim;
   Eigen::Vector3d u = stroke.direction.normalized();
   if (stroke.force > 0.0) {
@@ -157,7 +158,8 @@ ExplorationController::Aim ExplorationController::aim(const Stroke& stroke,
   return aim;
 }
 
-ExplorationController::Aim ExplorationController::aim(const Reach& reach, const Now&) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Reach& reach,
+                                                      const HandSensation&) noexcept {
   Aim aim;
   const Eigen::Vector3d way = reach.to - start_;
   const Smooth s = smooth_step(time_ / reach.duration);
@@ -169,7 +171,7 @@ ExplorationController::Aim ExplorationController::aim(const Reach& reach, const 
 }
 
 ExplorationController::Aim ExplorationController::aim(const Pursue& pursue,
-                                                      const Now& now) noexcept {
+                                                      const HandSensation& now) noexcept {
   Aim aim;
   const double each = 0.5 * pursue.lag;  // time constant
   aim.acceleration = (lead_ - desired_.position) / (each * each) - 2.0 / each * desired_.velocity;
@@ -179,7 +181,8 @@ ExplorationController::Aim ExplorationController::aim(const Pursue& pursue,
 }
 
 /// The hand goes on from wherever it is, but keeps to the plane of its loop.
-ExplorationController::Aim ExplorationController::aim(const Contour&, const Now& now) noexcept {
+ExplorationController::Aim ExplorationController::aim(const Contour&,
+                                                      const HandSensation& now) noexcept {
   Aim aim;
   const ContourFollower::Step step = follower_.step(time_, now.hand, now.felt, now.dt);
   desired_.position = now.hand.position + step.off_loop;
@@ -190,7 +193,7 @@ ExplorationController::Aim ExplorationController::aim(const Contour&, const Now&
 
 /// Aim from place to place as in a reach; at a place it keeps to the line along which it presses.
 ExplorationController::Aim ExplorationController::aim(const Palpate& palpate,
-                                                      const Now& now) noexcept {
+                                                      const HandSensation& now) noexcept {
   Aim aim;
   const PalpationStep step = palpation_at(palpate, time_);
   const Eigen::Vector3d& from = step.place == 0 ? start_ : palpate.places[step.place - 1];
@@ -227,7 +230,7 @@ Eigen::Vector3d ExplorationController::track(const Aim& aim, const PointState& h
 HandCommand ExplorationController::command(const PointState& hand, double dt,
                                            const Eigen::Vector3d& felt) noexcept {
   time_ += dt;
-  const Now now{hand, felt, dt};
+  const HandSensation now{hand, felt, dt};
   const Aim wanted = std::visit([&](const auto& probe) { return aim(probe, now); }, probe_);
   HandCommand command;
   carried_ *= std::exp(-dt / kLetGo);

@@ -92,19 +92,19 @@ class ExplorationController {
     bool keeps_place{false};
   };
   /// Sensations of the hand on a tick.
-  struct Now {
+  struct HandSensation {
     const PointState& hand;
     const Eigen::Vector3d& felt;  // [N]
     double dt;                    // [s]
   };
-  Aim aim(const Rest&, const Now& now) noexcept;
-  Aim aim(const Hold&, const Now& now) noexcept;
-  Aim aim(const Press& press, const Now& now) noexcept;
-  Aim aim(const Stroke& stroke, const Now& now) noexcept;
-  Aim aim(const Reach& reach, const Now& now) noexcept;
-  Aim aim(const Pursue& pursue, const Now& now) noexcept;
-  Aim aim(const Contour& contour, const Now& now) noexcept;
-  Aim aim(const Palpate& palpate, const Now& now) noexcept;
+  Aim aim(const Rest&, const HandSensation& now) noexcept;
+  Aim aim(const Hold&, const HandSensation& now) noexcept;
+  Aim aim(const Press& press, const HandSensation& now) noexcept;
+  Aim aim(const Stroke& stroke, const HandSensation& now) noexcept;
+  Aim aim(const Reach& reach, const HandSensation& now) noexcept;
+  Aim aim(const Pursue& pursue, const HandSensation& now) noexcept;
+  Aim aim(const Contour& contour, const HandSensation& now) noexcept;
+  Aim aim(const Palpate& palpate, const HandSensation& now) noexcept;
   Eigen::Vector3d track(const Aim& aim, const PointState& hand, double dt) noexcept;
 
   HandParameters hand_;

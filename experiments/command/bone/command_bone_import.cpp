@@ -128,12 +128,12 @@ void tidy(const BoneImportOptions& options, bone::BoneModel& model) {
   if (options.fill) {
     const double voxel = 1e9 * std::pow(model.grid.spacing, 3);
     const auto most = static_cast<std::size_t>(*options.fill / voxel);
-    const bone::Tidied filled = bone::fill_holes(model, most);
+    const bone::TidyResult filled = bone::fill_holes(model, most);
     fmt::print("filled      {} holes: {} voxels, {:.1f} mm3\n", filled.parts, filled.voxels,
                static_cast<double>(filled.voxels) * voxel);
   }
   if (options.largest) {
-    const bone::Tidied left = bone::keep_largest_part(model);
+    const bone::TidyResult left = bone::keep_largest_part(model);
     bone::crop_to_bone(model);
     fmt::print("left out    {} loose parts of bone: {} voxels\n", left.parts, left.voxels);
   }

@@ -60,7 +60,7 @@ std::optional<protocols::LinkChoice> meet_partner(const RunOptions& options,
         static_cast<std::uint16_t>(checked_number("--teach", *options.teach, 1024, 65535));
     say(fmt::format("waiting at port {} for the side that learns", meeting.port));
   }
-  tutoring::Met met = tutoring::meet(secret, meeting);
+  tutoring::EstablishedLink met = tutoring::meet(secret, meeting);
   protocols::LinkChoice link;
   link.role = options.teach ? protocols::LinkRole::kTeaches : protocols::LinkRole::kLearns;
   link.session = fmt::format("{:016x}", met.keys.session);

@@ -9,7 +9,7 @@
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
-#include "core/base/kept.h"
+#include "core/base/shared_cache.h"
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/surface/surface_mesh.h"
 #include "core/render/gl/image.h"
@@ -45,7 +45,7 @@ void add_timeline(const BoneDefinition& d, const protocols::PlannedTrial& trial,
 
 /// A bone's picture, one of the last few if nothing that it shows has changed.
 std::shared_ptr<const render::Image> kept_picture(const protocols::PlacedBone& bone) {
-  static Kept<protocols::PlacedBone, render::Image> kept(2);
+  static SharedCache<protocols::PlacedBone, render::Image> kept(2);
   return kept.get(bone, [&] {
     return std::make_shared<const render::Image>(protocols::placement_picture(bone));
   });
@@ -235,7 +235,7 @@ std::vector<SpaceObject> made(const FeltBone& felt) {
 
 std::shared_ptr<const std::vector<SpaceObject>> objects_of(const protocols::PlacedBone& bone,
                                                            double scale) {
-  static Kept<FeltBone, std::vector<SpaceObject>> kept(2);
+  static SharedCache<FeltBone, std::vector<SpaceObject>> kept(2);
   const FeltBone felt{bone.model, bone.placement, scale};
   return kept.get(felt,
                   [&] { return std::make_shared<const std::vector<SpaceObject>>(made(felt)); });

@@ -220,10 +220,10 @@ void check_timeout(Table& table, Reading& reading) {
 }
 
 const char* unit_of(const Requirement& require) {
-  return require.measure >= 0                    ? ""
-         : require.of == Requirement::Of::kDepth ? "m"
-         : require.of == Requirement::Of::kForce ? "N"
-                                                 : "m/s";
+  return require.measure >= 0                          ? ""
+         : require.of == Requirement::Quantity::kDepth ? "m"
+         : require.of == Requirement::Quantity::kForce ? "N"
+                                                       : "m/s";
 }
 
 const Schema<Requirement>& requirement_schema() {
@@ -231,7 +231,9 @@ const Schema<Requirement>& requirement_schema() {
   static const auto schema =
       Schema<R>()
           .choice("max_of", &R::of,
-                  {{"depth", R::Of::kDepth}, {"force", R::Of::kForce}, {"speed", R::Of::kSpeed}},
+                  {{"depth", R::Quantity::kDepth},
+                   {"force", R::Quantity::kForce},
+                   {"speed", R::Quantity::kSpeed}},
                   "Quantity whose largest value in the stage must be enough; without [require] "
                   "nothing must")
           .otherwise("none; needed unless `measure` is stated")
@@ -285,7 +287,7 @@ void read_requirement(Table& table, const std::string& key, Reading& reading) {
   read_required_measure(inner, reading, require);
   requirement_schema().read(inner, require);
   check_requirement(inner, require);
-  if (inner.has("max_of") && require.of != Requirement::Of::kSpeed) {
+  if (inner.has("max_of") && require.of != Requirement::Quantity::kSpeed) {
     inner.describe({"field", "Field whose depth or force is required", "", true});
     require.field =
         index_of(inner, "field", inner.text("field"), reading, reading.source->fields, "field");

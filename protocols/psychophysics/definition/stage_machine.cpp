@@ -50,7 +50,8 @@ void check_stage(const Stage& stage, std::size_t number, std::size_t regions, st
              "its times must be 0 or more");
   check_that(stage.timeout > 0.0, number, "its timeout must be above 0");
   if (stage.require) {
-    const bool whole = stage.require->of == Requirement::Of::kSpeed || stage.require->measure >= 0;
+    const bool whole =
+        stage.require->of == Requirement::Quantity::kSpeed || stage.require->measure >= 0;
     check_that(whole || (stage.require->field >= 0 && is_index(stage.require->field, fields)),
                number, "the field of its requirement is not there");
   }
@@ -143,8 +144,8 @@ void StageMachine::press(Readings readings) noexcept {
 }
 
 /// The first region that its tool is not in, which "until inside" waits for.
-StageMachine::Outside StageMachine::first_outside(std::uint64_t regions,
-                                                  Readings readings) const noexcept {
+StageMachine::MissedRegion StageMachine::first_outside(std::uint64_t regions,
+                                                       Readings readings) const noexcept {
   while (regions != 0) {
     const std::size_t index = take_lowest(regions);
     const StageRegion& region = regions_[index];
@@ -201,13 +202,13 @@ void StageMachine::measure(const Stage& stage, double speed, Scenes scenes) noex
   if (!stage.require || stage.require->measure >= 0) {
     return;
   }
-  if (stage.require->of == Requirement::Of::kSpeed) {
+  if (stage.require->of == Requirement::Quantity::kSpeed) {
     times.most = std::max(times.most, speed);
     return;
   }
   for (const scene::Scene& scene : scenes) {
     const scene::FieldState& felt = scene.state(static_cast<std::size_t>(stage.require->field));
-    const bool depth = stage.require->of == Requirement::Of::kDepth;
+    const bool depth = stage.require->of == Requirement::Quantity::kDepth;
     times.most = std::max(times.most, depth ? felt.depth : felt.force.norm());
   }
 }

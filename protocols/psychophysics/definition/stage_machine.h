@@ -42,8 +42,8 @@ enum class Consequence : std::uint8_t {
 
 /// An event that must have happened in a stage: "did they press at all?"
 struct Requirement {
-  enum class Of : std::uint8_t { kDepth, kForce, kSpeed };
-  Of of{Of::kDepth};
+  enum class Quantity : std::uint8_t { kDepth, kForce, kSpeed };
+  Quantity of{Quantity::kDepth};
   int field{-1};    // whose depth or force; -1 of a speed, which is that of tools
   int measure{-1};  // of the definition, whose value is required; -1: the largest value of `of`
   double at_least{0.0};  // of the largest value in the stage, of any device [m, N or m/s]
@@ -123,11 +123,11 @@ class StageMachine {
   int repeats() const noexcept { return repeats_; }
   /// Region in which the tool was missing when the last stage came to its time-out; -1: it was in
   /// all regions.
-  struct Outside {
+  struct MissedRegion {
     int region{-1};
     double distance{0.0};  // of the tool to the region [m]
   };
-  Outside outside() const noexcept { return outside_; }
+  MissedRegion outside() const noexcept { return outside_; }
   /// The stage that an interval was aborted in, and why, are the last that ended.
   std::span<const StageTimes> times() const noexcept { return times_; }
 
@@ -135,7 +135,7 @@ class StageMachine {
   void leave(StageEnd how, Consequence what, Scenes scenes) noexcept;
   bool holds(const Until& until, Readings readings, Scenes scenes, double speed) const noexcept;
   bool measures(const Until& until, Readings readings) const noexcept;
-  Outside first_outside(std::uint64_t regions, Readings readings) const noexcept;
+  MissedRegion first_outside(std::uint64_t regions, Readings readings) const noexcept;
   bool all_touch(std::uint64_t fields, Scenes scenes) const noexcept;
   void measure(const Stage& stage, double speed, Scenes scenes) noexcept;
   bool is_enough(const Stage& stage, std::span<const Measurement> measurements) noexcept;
@@ -154,7 +154,7 @@ class StageMachine {
   std::uint32_t buttons_pressed_{0}, keys_pressed_{0};  // in this stage
   bool hands_known_{false};
   Eigen::Vector3d cursor_{Eigen::Vector3d::Zero()};
-  Outside outside_;
+  MissedRegion outside_;
   int repeats_{0};
   int most_repeats_{0};
 };

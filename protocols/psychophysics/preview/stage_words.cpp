@@ -92,15 +92,17 @@ std::string words_of_end(const TrialsDefinition& d, const Presented& presented,
 }
 
 std::string words_of_requirement(const Presented& presented, const Requirement& require) {
-  using Of = Requirement::Of;
+  using Quantity = Requirement::Quantity;
   const std::string what =
-      require.of == Of::kSpeed
+      require.of == Quantity::kSpeed
           ? "speed"
-          : fmt::format("{} of {}", require.of == Of::kDepth ? "depth" : "force",
+          : fmt::format("{} of {}", require.of == Quantity::kDepth ? "depth" : "force",
                         require.field < 0
                             ? std::string("no field")
                             : presented.fields[static_cast<std::size_t>(require.field)].name);
-  const char* unit = require.of == Of::kDepth ? "m" : require.of == Of::kForce ? "N" : "m/s";
+  const char* unit = require.of == Quantity::kDepth   ? "m"
+                     : require.of == Quantity::kForce ? "N"
+                                                      : "m/s";
   return fmt::format("{} at least {:g} {}, else {}", what, require.at_least, unit,
                      words_of(require.otherwise));
 }

@@ -25,9 +25,9 @@ void Decider::begin_trial(int trial) noexcept {
   other_ = subject::trial_stream(seed_, "other answers", trial);
 }
 
-Decider::Said Decider::decide(const TrialQuestion& question, bool first,
-                              std::span<const double> percepts) noexcept {
-  Said said;
+Decider::DecidedAnswer Decider::decide(const TrialQuestion& question, bool first,
+                                       std::span<const double> percepts) noexcept {
+  DecidedAnswer said;
   if (!question.has_choices()) {
     question.kind->simulate(question, judge_.magnitude(std::max(0.0, percepts.back())), other_,
                             said.draft);

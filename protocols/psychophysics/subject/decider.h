@@ -19,7 +19,7 @@ RandomStream sense_stream(std::uint64_t seed, int trial, int interval) noexcept;
 /// without one. Servo thread after construction: no allocation, lock, I/O or throw.
 class Decider {
  public:
-  struct Said {
+  struct DecidedAnswer {
     int choice{-1};                // from 0; -1: the question has no choices
     questions::AnswerDraft draft;  // of a question without choices
   };
@@ -32,7 +32,8 @@ class Decider {
   void set_previous(int answer) noexcept { judge_.set_previous(answer); }
   /// The last interval is judged; "largest" and "smallest" compare all, "adjust" the last with the
   /// first. @param percepts  of the intervals, 1 to kMostIntervals
-  Said decide(const TrialQuestion& question, bool first, std::span<const double> percepts) noexcept;
+  DecidedAnswer decide(const TrialQuestion& question, bool first,
+                       std::span<const double> percepts) noexcept;
 
  private:
   subject::Decision judged(std::span<const double> percepts) noexcept;

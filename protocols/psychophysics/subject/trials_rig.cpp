@@ -359,14 +359,14 @@ class TrialsRig::Participant final : public stimulus::Observer {
     if (wait_ > 0.0 || thinks_ || decided_ || view.told()) {
       return;
     }
-    const Decider::Said said = left_ != nullptr ? left_said_ : decide();
+    const Decider::DecidedAnswer said = left_ != nullptr ? left_said_ : decide();
     said_.choice = said.choice;
     said_.draft = said.draft;
     decided_ = true;
     give(questions_[view.question - 1U], view);
   }
 
-  Decider::Said decide() noexcept {
+  Decider::DecidedAnswer decide() noexcept {
     return decider_.decide(questions_[static_cast<std::size_t>(question_ - 1)], question_ == 1,
                            std::span(percepts_.data(), intervals_));
   }
@@ -450,7 +450,7 @@ class TrialsRig::Participant final : public stimulus::Observer {
   const std::vector<TrialQuestion>& questions_;
   SimulatedAnswer& said_;
   LeftDecision* left_;  // null: decides by itself
-  Decider::Said left_said_;
+  Decider::DecidedAnswer left_said_;
   double left_reaction_{0.0};  // that was proposed [s]
   bool thinks_{false};         // until the decision that was left is there
   std::uint64_t seed_;

@@ -255,7 +255,7 @@ TEST(RdtChannelTest, MistakesInADefinitionGetASentence) {
 /// Counts samples without keeping them.
 class CountingInbox final : public ChannelInbox {
  public:
-  void take(const Measured& /*sample*/) override { ++samples; }
+  void take(const InstrumentSample& /*sample*/) override { ++samples; }
   void note(Incident /*what*/, double /*amount*/, const std::string& /*text*/,
             std::optional<std::int64_t> /*time_ns*/) override {}
   std::int64_t now() const override { return 0; }

@@ -18,12 +18,12 @@ double sine(double hertz, double t) { return std::sin(2.0 * std::numbers::pi * h
 
 /// The longest train within a second of this course of the force along y.
 template <typename Force, typename Accounted>
-SwingCounter::Train longest(Force force, Accounted accounted) {
+SwingCounter::Alternation longest(Force force, Accounted accounted) {
   SwingCounter counter(1.0, 0.06);
-  SwingCounter::Train longest;
+  SwingCounter::Alternation longest;
   for (int i = 0; i < 1000; ++i) {
     const double t = kTick * i;
-    const SwingCounter::Train train =
+    const SwingCounter::Alternation train =
         counter.look(Vector3d(0.0, force(t), 0.0), Vector3d(0.0, accounted(t), 0.0), kTick);
     longest = train.turns > longest.turns ? train : longest;
   }
@@ -57,7 +57,7 @@ TEST(SwingCounterTest, WhatIsTooSmallOrTooSlowIsNoTrain) {
 
 TEST(SwingCounterTest, ATrainIsOverAfterAWhile) {
   SwingCounter counter(1.0, 0.06);
-  SwingCounter::Train train;
+  SwingCounter::Alternation train;
   for (int i = 0; i < 500; ++i) {
     const double t = kTick * i;
     const double force = t < 0.2 ? 2.0 * sine(40.0, t) : 0.0;

@@ -95,7 +95,7 @@ class Pair {
       ASSERT_TRUE(message.has_value());
       s.hear(*message, now_ns);
     }
-    CoupledSide::Own own;
+    CoupledSide::OwnState own;
     own.tool = hand.state;
     own.lead = own_lead;
     own.felt_back = 1.0;

@@ -159,8 +159,8 @@ TEST(SealerTest, NothingOfTheMessageCanBeReadOff) {
 }
 
 struct Pair {
-  Met host;
-  Met guest;
+  EstablishedLink host;
+  EstablishedLink guest;
 };
 
 MeetingRequest as_host(std::uint16_t port) {
@@ -193,9 +193,9 @@ auto soon(Call call) -> decltype(call()) {
 
 Pair met() {
   const std::uint16_t port = test::free_port();
-  std::optional<Met> host;
+  std::optional<EstablishedLink> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
-  Met guest = soon([&] { return meet(secret(), as_guest(port)); });
+  EstablishedLink guest = soon([&] { return meet(secret(), as_guest(port)); });
   waiting.join();
   return {std::move(*host), std::move(guest)};
 }
@@ -203,7 +203,7 @@ Pair met() {
 TEST(MeetingTest, AGuestWithoutTheSecretIsTurnedAwayAndTheNextLetIn) {
   const std::uint16_t port = test::free_port();
   std::vector<std::string> notices;
-  std::optional<Met> host;
+  std::optional<EstablishedLink> host;
   std::thread waiting([&] {
     MeetingRequest request = as_host(port);
     request.notice = [&](const std::string& text) { notices.push_back(text); };
@@ -212,7 +212,7 @@ TEST(MeetingTest, AGuestWithoutTheSecretIsTurnedAwayAndTheNextLetIn) {
   const Secret wrong("another long secret", "test");
   EXPECT_THAT(message_of<RunError>([&] { soon([&] { return meet(wrong, as_guest(port)); }); }),
               HasSubstr("the secrets differ"));
-  const Met guest = meet(secret(), as_guest(port, "localhost"));
+  const EstablishedLink guest = meet(secret(), as_guest(port, "localhost"));
   waiting.join();
   ASSERT_TRUE(host.has_value());
   EXPECT_EQ(host->keys.send, guest.keys.receive);
@@ -232,13 +232,13 @@ Socket silent_guest(std::uint16_t port) {
 
 TEST(MeetingTest, SilentGuestsHoldUpNobody) {
   const std::uint16_t port = test::free_port();
-  std::optional<Met> host;
+  std::optional<EstablishedLink> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
   std::vector<Socket> silent;
   for (int i = 0; i < 4; ++i) {
     silent.push_back(silent_guest(port));
   }
-  const Met guest = meet(secret(), as_guest(port));
+  const EstablishedLink guest = meet(secret(), as_guest(port));
   waiting.join();
   EXPECT_EQ(host->keys.send, guest.keys.receive);
   for (const Socket& left : silent) {
@@ -250,7 +250,7 @@ TEST(MeetingTest, SilentGuestsHoldUpNobody) {
 
 TEST(MeetingTest, OfTooManyTheOneThatHasWaitedLongestIsToldThatTheHostIsBusy) {
   const std::uint16_t port = test::free_port();
-  std::optional<Met> host;
+  std::optional<EstablishedLink> host;
   std::thread waiting([&] { host = meet(secret(), as_host(port)); });
   bool told = false;
   while (!told) {  // on a busy machine some leave before the last has come
@@ -262,7 +262,7 @@ TEST(MeetingTest, OfTooManyTheOneThatHasWaitedLongestIsToldThatTheHostIsBusy) {
     told = receive_all(silent.front(), closing, {std::chrono::steady_clock::now() + 60s, {}}) &&
            Handshake::is_busy(closing);
   }
-  const Met guest = meet(secret(), as_guest(port));
+  const EstablishedLink guest = meet(secret(), as_guest(port));
   waiting.join();
   EXPECT_EQ(host->keys.send, guest.keys.receive);
 }

@@ -35,7 +35,7 @@ TEST(TidyTest, HolesWithoutAWayOutAreFilledUpToASize) {
   BoneModel model = block();
   EXPECT_EQ(fill_holes(model, 7).voxels, 0U);
   EXPECT_EQ(model.labels, block().labels);
-  const Tidied filled = fill_holes(model, 8);
+  const TidyResult filled = fill_holes(model, 8);
   EXPECT_EQ(filled.parts, 1U);
   EXPECT_EQ(filled.voxels, 8U);
   EXPECT_EQ(model.labels[model.grid.index(5, 6, 5)], 1);
@@ -60,7 +60,7 @@ TEST(TidyTest, AHoleInAStructureIsFilledWithItAndTheLowestDensity) {
 
 TEST(TidyTest, OnlyTheLargestPartOfBoneStaysAndStructuresDoToo) {
   BoneModel model = block();
-  const Tidied left = keep_largest_part(model);
+  const TidyResult left = keep_largest_part(model);
   EXPECT_EQ(left.parts, 1U);
   EXPECT_EQ(left.voxels, 1U);
   EXPECT_EQ(model.labels[model.grid.index(0, 0, 0)], 0);

@@ -134,7 +134,7 @@ Score score(double hours, std::uint64_t seed) {
   Theatre theatre(seed);
   NerveMonitor monitor({}, 4);
   RandomStream random(seed, "plan");
-  std::vector<std::vector<Planted>> truth(4);
+  std::vector<std::vector<SimulatedDischarge>> truth(4);
   Score s;
   const auto ticks = static_cast<int>(hours * 3600.0 / kDt);
   int next = 1000;
@@ -145,7 +145,7 @@ Score score(double hours, std::uint64_t seed) {
       const double severity = random.uniform(0.3, 1.0);
       Emg& muscle = theatre.muscles[m];
       truth[m].push_back(train ? muscle.train(severity) : muscle.burst(severity));
-      const Planted& p = truth[m].back();
+      const SimulatedDischarge& p = truth[m].back();
       s.planted_train += train ? static_cast<double>(p.last - p.first) / 8000.0 : 0.0;
       next = tick + 4000 + static_cast<int>(random.below(1000));
     }
@@ -160,7 +160,7 @@ Score score(double hours, std::uint64_t seed) {
   for (const NerveEvent& e : theatre.events) {
     bool right = false;
     for (std::size_t k = 0; k < truth[e.channel].size(); ++k) {
-      const Planted& p = truth[e.channel][k];
+      const SimulatedDischarge& p = truth[e.channel][k];
       if (!e.artefact && e.first <= p.last + 80 && e.last + 80 >= p.first) {
         hit[e.channel][k] = true;
         right = true;

@@ -46,14 +46,14 @@ class HeldBoneTest : public ::testing::Test {
     }
   }
 
-  HeldBone::Followed hold(const Isometry3d& hand) {
-    const HeldBone::Followed followed = held_.follow(world_, hand, kDt);
+  HeldBone::HeldStep hold(const Isometry3d& hand) {
+    const HeldBone::HeldStep followed = held_.follow(world_, hand, kDt);
     world_.drag(followed.tool);
     return followed;
   }
   /// Leads the hand to a shift from its first place, in a straight line. @returns the last tick
-  HeldBone::Followed lead(const Vector3d& from, const Vector3d& to, int ticks) {
-    HeldBone::Followed last;
+  HeldBone::HeldStep lead(const Vector3d& from, const Vector3d& to, int ticks) {
+    HeldBone::HeldStep last;
     for (int tick = 1; tick <= ticks; ++tick) {
       Isometry3d hand = grip_;
       hand.translation() += from + (to - from) * tick / ticks;
@@ -73,7 +73,7 @@ TEST_F(HeldBoneTest, GoesWithTheHandExactlyWhileItTouchesNothing) {
   for (int tick = 0; tick < 300; ++tick) {
     hand.translation() += Vector3d(2e-5, -1e-5, 1e-5);
     hand.rotate(Eigen::AngleAxisd(1e-3, Vector3d::UnitX()));
-    const HeldBone::Followed followed = hold(hand);
+    const HeldBone::HeldStep followed = hold(hand);
     EXPECT_TRUE(followed.force.isZero(0.0));
     EXPECT_EQ(followed.tool.matrix(), hand.matrix());
   }
@@ -82,7 +82,7 @@ TEST_F(HeldBoneTest, GoesWithTheHandExactlyWhileItTouchesNothing) {
 TEST_F(HeldBoneTest, RestsOnTheOtherBoneAndTheHandFeelsItsSpring) {
   constexpr double kDown = 6e-3;  // the gap is 2 mm
   lead(Vector3d::Zero(), {0.0, 0.0, -kDown}, 1000);
-  const HeldBone::Followed at = lead({0.0, 0.0, -kDown}, {0.0, 0.0, -kDown}, 200);
+  const HeldBone::HeldStep at = lead({0.0, 0.0, -kDown}, {0.0, 0.0, -kDown}, 200);
   // Samples are centres of voxels: surfaces overlap by half of one when these touch.
   EXPECT_NEAR(height(), -(kGap + 0.5) * 0.5e-3, 0.1e-3);
   EXPECT_GT(at.touching, 20);
@@ -115,7 +115,7 @@ TEST_F(HeldBoneTest, SticksBelowTheAngleOfFrictionAndSlidesAbove) {
   EXPECT_LT(stuck, 0.1e-3);
   const Vector3d above = down + 3.0 * HeldBone::kFriction * normal * Vector3d::UnitX();
   lead(below, above, 400);
-  const HeldBone::Followed at = lead(above, above, 3000);
+  const HeldBone::HeldStep at = lead(above, above, 3000);
   EXPECT_GT(world_.pose(1).translation().x() - before, 1e-3);
   // What is left of the pull is what friction bears, and edges that catch on voxels.
   EXPECT_LT(-at.force.x(), 1.5 * HeldBone::kFriction * at.force.z());

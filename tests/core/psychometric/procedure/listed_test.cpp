@@ -9,7 +9,7 @@
 namespace haptrial::psychometric {
 namespace {
 
-std::vector<double> presented(Listed& procedure, double answer) {
+std::vector<double> presented(ListedLevels& procedure, double answer) {
   std::vector<double> levels;
   while (!procedure.finished()) {
     levels.push_back(procedure.next()[0]);

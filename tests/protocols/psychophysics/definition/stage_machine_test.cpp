@@ -27,7 +27,7 @@ scene::Field floor_field() {
 
 /// At least this depth in the first field, or the interval again.
 Requirement depth_of(double at_least) {
-  return {.of = Requirement::Of::kDepth, .field = 0, .at_least = at_least};
+  return {.of = Requirement::Quantity::kDepth, .field = 0, .at_least = at_least};
 }
 
 class StageMachineTest : public testing::Test {
@@ -279,7 +279,7 @@ TEST_F(StageMachineTest, WhatIsNotThereIsNamed) {
       },
       testing::ThrowsMessage<std::invalid_argument>("stage 2: its region is not there"));
   stage = {};
-  stage.require = Requirement{.of = Requirement::Of::kForce, .at_least = 1.0};
+  stage.require = Requirement{.of = Requirement::Quantity::kForce, .at_least = 1.0};
   EXPECT_THROW(machine({stage}), std::invalid_argument);
   EXPECT_THROW(machine({}), std::invalid_argument);
 }

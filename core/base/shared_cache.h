@@ -15,12 +15,12 @@ namespace haptrial {
 /// Those asked for last are kept. Any thread but the servo thread.
 /// @tparam Key  everything that a value depends on, compared by ==; what it points to is constant
 template <class Key, class Value>
-class Kept {
+class SharedCache {
  public:
   using Shared = std::shared_ptr<const Value>;
 
   /// @param most  that are kept >= 1
-  explicit Kept(std::size_t most) : most_(most) {}
+  explicit SharedCache(std::size_t most) : most_(most) {}
 
   /// @param make  called if there is none; what it throws, all get who asked for the same
   /// @returns the value, never null if make() returns none

@@ -1,4 +1,4 @@
-#include "core/base/kept.h"
+#include "core/base/shared_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@ auto counting(std::atomic<int>& made, int value) {
   };
 }
 
-TEST(KeptTest, TheSameKeyIsMadeOnceAndTheOldestLeaves) {
-  Kept<int, int> kept(2);
+TEST(SharedCacheTest, TheSameKeyIsMadeOnceAndTheOldestLeaves) {
+  SharedCache<int, int> kept(2);
   std::atomic<int> made{0};
   const auto first = kept.get(1, counting(made, 10));
   kept.get(2, counting(made, 20));
@@ -30,10 +30,10 @@ TEST(KeptTest, TheSameKeyIsMadeOnceAndTheOldestLeaves) {
   EXPECT_EQ(*first, 10) << "whoever has a value keeps it";
 }
 
-TEST(KeptTest, ThreadsThatAskTogetherShareOneValue) {
-  Kept<int, int> kept(1);
+TEST(SharedCacheTest, ThreadsThatAskTogetherShareOneValue) {
+  SharedCache<int, int> kept(1);
   std::atomic<int> made{0};
-  std::vector<Kept<int, int>::Shared> found(8);
+  std::vector<SharedCache<int, int>::Shared> found(8);
   std::vector<std::thread> threads;
   for (auto& each : found) {
     threads.emplace_back([&] { each = kept.get(7, counting(made, 70)); });
@@ -47,8 +47,8 @@ TEST(KeptTest, ThreadsThatAskTogetherShareOneValue) {
   }
 }
 
-TEST(KeptTest, AFailureIsTheSameForAll) {
-  Kept<int, int> kept(1);
+TEST(SharedCacheTest, AFailureIsTheSameForAll) {
+  SharedCache<int, int> kept(1);
   const auto fails = []() -> std::shared_ptr<const int> { throw std::runtime_error("no bone"); };
   EXPECT_THROW(kept.get(1, fails), std::runtime_error);
   std::atomic<int> made{0};
