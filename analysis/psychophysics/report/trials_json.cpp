@@ -138,18 +138,13 @@ Json cues_json(const TrialsResult& result) {
           {"at", plan.at},       {"conflict", plan.conflict}, {"levels", levels}};
 }
 
-std::string laid_out(const Json& value) {
-  return value.dump(2, ' ', false, Json::error_handler_t::replace);
-}
-
 /// The report's results, member by member.
 class ResultsJson {
  public:
-  ResultsJson(const TrialsResult& result, const std::vector<FindingList>& own,
-              const JsonPieces::Take& take)
-      : result_(result), own_(own), pieces_(take) {}
+  ResultsJson(const TrialsResult& result, const std::vector<FindingList>& own)
+      : result_(result), own_(own) {}
 
-  void write() {
+  std::string made() {
     const TrialsPlan& plan = result_.plan;
     add("title", result_.title);
     add("simulated", result_.simulated());
@@ -181,21 +176,21 @@ class ResultsJson {
       add_table(time_findings(result_));
     }
     add_rest();
-    pieces_.end();
+    return root_.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   }
 
  private:
-  void add(const char* name, const Json& value) { pieces_.member(name, laid_out(value)); }
+  void add(const char* name, const Json& value) { root_[name] = value; }
 
   template <class T>
   void add_list(const char* name, const std::vector<T>& values) {
-    pieces_.list(name, values.size(), [&](std::size_t i) { return laid_out(to_json(values[i])); });
+    Json& list = root_[name] = Json::array();
+    for (const T& value : values) {
+      list.push_back(to_json(value));
+    }
   }
 
-  void add_table(const FindingTable& table) {
-    pieces_.list(table.name, table.rows.size(),
-                 [&](std::size_t i) { return laid_out(json_of(table.rows[i])); });
-  }
+  void add_table(const FindingTable& table) { root_[table.name] = json_of(table.rows); }
 
   void add_functions() {
     const TrialsPlan& plan = result_.plan;
@@ -241,14 +236,13 @@ class ResultsJson {
 
   const TrialsResult& result_;
   const std::vector<FindingList>& own_;
-  JsonPieces pieces_;
+  Json root_;
 };
 
 }  // namespace
 
-void results_json(const TrialsResult& result, const std::vector<FindingList>& own,
-                  const JsonPieces::Take& take) {
-  ResultsJson(result, own, take).write();
+std::string results_json(const TrialsResult& result, const std::vector<FindingList>& own) {
+  return ResultsJson(result, own).made();
 }
 
 }  // namespace haptrial::analysis::trials

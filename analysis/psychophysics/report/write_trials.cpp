@@ -98,7 +98,7 @@ void write_trials(const TrialsResult& result, const std::filesystem::path& folde
   const Staging staging(folder);
   trials_csv(result.data, [&](const std::string& text) { staging.append("trials.csv", text); });
   staging.write("estimates.csv", estimates_csv(result));
-  results_json(result, own, [&](const std::string& text) { staging.append("results.json", text); });
+  staging.write("results.json", results_json(result, own));
   if (!result.surfaces.empty()) {
     staging.write("surfaces.csv", surfaces_csv(result));
   }
