@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "analysis/statistics/design/analysis_plan.h"
-
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::analysis {
 

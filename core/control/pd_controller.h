@@ -2,13 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/point_state.h"
 #include "core/control/gain_shares.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::control {
 

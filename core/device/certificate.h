@@ -3,10 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::device {
 

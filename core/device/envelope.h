@@ -2,16 +2,11 @@
 
 #include <Eigen/Core>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
 #include "core/device/fault.h"
 #include "core/device/force_watch.h"
 #include "core/device/reading_watch.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-class Table;
-}  // namespace haptrial
 
 namespace haptrial::device {
 

@@ -7,12 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

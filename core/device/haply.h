@@ -4,13 +4,9 @@
 #include <atomic>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
 #include "core/device/haply_link.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

@@ -2,15 +2,11 @@
 
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/handle_physics.h"
 #include "core/device/pointer_hand.h"
 #include "core/device/virtual_device.h"
 #include "core/realtime/latest_value.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

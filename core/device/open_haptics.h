@@ -4,13 +4,9 @@
 #include <memory>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
 #include "core/realtime/latest_value.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

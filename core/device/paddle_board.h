@@ -4,12 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/serial_board.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

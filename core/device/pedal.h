@@ -4,13 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/input_reader.h"
 #include "core/realtime/latest_value.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

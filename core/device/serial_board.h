@@ -11,13 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
 #include "core/realtime/latest_value.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

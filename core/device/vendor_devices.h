@@ -5,15 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/force_dimension.h"
 #include "core/device/hapi_board.h"
 #include "core/device/haply.h"
 #include "core/device/open_haptics.h"
 #include "core/device/paddle_board.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::device {
 

@@ -2,14 +2,10 @@
 
 #include <array>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/device/device.h"
 #include "core/device/handle_physics.h"
 #include "core/device/motor_faults.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::device {
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/key_press.h"
 #include "core/questions/answer_view.h"
 #include "core/questions/hint_texts.h"
@@ -12,8 +13,7 @@
 
 namespace haptrial {
 class RandomStream;
-class Table;
-}  // namespace haptrial
+}
 
 namespace haptrial::questions {
 

@@ -7,15 +7,11 @@
 #include <span>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/tool_state.h"
 #include "core/realtime/latest_value.h"
 #include "core/sound/card_player.h"
 #include "core/sound/harmonics.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::sound {
 

@@ -1,10 +1,7 @@
 #pragma once
 
+#include "core/base/definition/schema_forward.h"
 #include "core/sound/cue.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::sound {
 

@@ -2,11 +2,11 @@
 
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
+
 namespace haptrial {
 class RandomStream;
-template <class T>
-class Schema;
-}  // namespace haptrial
+}
 
 namespace haptrial::stimulus {
 

@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/point_state.h"
 
 namespace haptrial {
 class RandomStream;
-template <class T>
-class Schema;
-}  // namespace haptrial
+}
 
 namespace haptrial::stimulus {
 

@@ -4,13 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/stream/onset_log.h"
-
-namespace haptrial {
-class Table;
-template <class T>
-class Schema;
-}  // namespace haptrial
 
 namespace haptrial::markers {
 

@@ -2,10 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::subject {
 

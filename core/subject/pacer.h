@@ -3,14 +3,10 @@
 #include <Eigen/Core>
 #include <cstdint>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/random.h"
 #include "core/subject/hand_parameters.h"
 #include "core/subject/noise.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::subject {
 

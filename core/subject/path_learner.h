@@ -4,14 +4,10 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/random.h"
 #include "core/subject/force_memory.h"
 #include "core/subject/hand_parameters.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::subject {
 

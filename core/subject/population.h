@@ -8,10 +8,7 @@
 #include <vector>
 
 #include "core/base/definition/bounds.h"
-
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::subject {
 

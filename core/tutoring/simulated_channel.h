@@ -5,13 +5,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/random.h"
 #include "core/tutoring/tick_message.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::tutoring {
 

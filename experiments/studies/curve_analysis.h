@@ -6,10 +6,7 @@
 #include "analysis/force_training/score/score_parameters.h"
 #include "analysis/learning/learning_plan.h"
 #include "analysis/statistics/design/analysis_plan.h"
-
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 struct Definition;
@@ -17,10 +14,6 @@ struct Definition;
 
 namespace haptrial::protocols {
 struct Definition;
-}
-
-namespace haptrial {
-class Table;
 }
 
 namespace haptrial::experiments {

@@ -5,13 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
-
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::experiments {
 

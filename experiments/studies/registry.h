@@ -4,11 +4,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "experiments/studies/study.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::experiments {
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/definition/given_in.h"
+#include "core/base/definition/schema_forward.h"
 #include "core/channel/channel_options.h"
 #include "core/control/handle_loop.h"
 #include "core/device/certificate.h"
@@ -32,10 +33,6 @@
 #include "protocols/definition/screen_options.h"
 #include "protocols/definition/session_plan.h"
 #include "protocols/definition/tutoring_options.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::sound {
 struct CueSet;

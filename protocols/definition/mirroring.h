@@ -2,9 +2,7 @@
 
 #include <string>
 
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

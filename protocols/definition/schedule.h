@@ -5,11 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace haptrial {
-template <class T>
-class Schema;
-class Table;
-}  // namespace haptrial
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

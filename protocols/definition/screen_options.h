@@ -3,13 +3,9 @@
 #include <cstdint>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/questions/hint_texts.h"
 #include "core/render/flat/text_screen.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::protocols {
 

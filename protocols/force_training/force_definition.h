@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/control/handle_loop.h"
 #include "core/stimulus/stimulus.h"
 #include "core/subject/pacer.h"
@@ -15,10 +16,6 @@
 #include "core/subject/subject_parameters.h"
 #include "protocols/definition/definition.h"
 #include "protocols/force_training/trajectory_pass.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/control/minimum_jerk.h"
 #include "core/control/pd_controller.h"
 #include "core/realtime/block_log.h"
@@ -12,11 +13,6 @@
 #include "protocols/definition/tutoring_options.h"
 #include "protocols/force_training/curve_guide.h"
 #include "protocols/interface/pass.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::protocols {
 

@@ -4,11 +4,7 @@
 #include <vector>
 
 #include "analysis/statistics/tests/spending_bounds.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}  // namespace haptrial
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::analysis {
 

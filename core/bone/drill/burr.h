@@ -5,12 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/drill/burr_shape.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::bone {
 

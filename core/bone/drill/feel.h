@@ -2,12 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/drill/drill.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::bone {
 

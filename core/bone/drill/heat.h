@@ -1,9 +1,6 @@
 #pragma once
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::bone {
 

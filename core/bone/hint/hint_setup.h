@@ -8,12 +8,8 @@
 #include <string_view>
 
 #include "core/base/definition/given_in.h"
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/hint/safe_limits.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::hint {
 

@@ -10,15 +10,11 @@
 #include <unordered_map>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/model/flood.h"
 #include "core/bone/model/occupancy.h"
 #include "core/bone/model/world_poses.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::bone {
 

@@ -6,13 +6,10 @@
 #include <vector>
 
 #include "core/base/definition/given_in.h"
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/nerve/emg.h"
 #include "core/bone/nerve/exposure.h"
 #include "core/bone/nerve/monitor.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::nerve {
 

@@ -6,11 +6,7 @@
 #include <vector>
 
 #include "core/base/definition/given_in.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::bone {
 

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/dust/dust_surroundings.h"
 #include "core/bone/model/bone_model.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::bone {
 

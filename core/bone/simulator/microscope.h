@@ -1,11 +1,7 @@
 #pragma once
 
 #include "core/base/camera.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::bone {
 

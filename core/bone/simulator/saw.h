@@ -1,11 +1,7 @@
 #pragma once
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/burr_tool.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::bone {
 

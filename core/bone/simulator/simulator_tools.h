@@ -5,13 +5,10 @@
 #include <variant>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/burr_tool.h"
 #include "core/bone/simulator/cut_plane.h"
 #include "core/bone/simulator/plate.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::bone {
 

@@ -7,14 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/dent.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-class Table;
-}  // namespace haptrial
 
 namespace haptrial::bone {
 

@@ -3,11 +3,8 @@
 #include <optional>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/psychometric/function/psychometric_function.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::psychometric {
 

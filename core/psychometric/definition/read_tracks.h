@@ -2,11 +2,8 @@
 
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/psychometric/definition/track.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::psychometric {
 

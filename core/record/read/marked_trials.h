@@ -5,12 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/record/read/session_reader.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::record {
 

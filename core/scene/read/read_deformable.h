@@ -3,13 +3,10 @@
 #include <memory>
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/deformable/springs/spring_body.h"
 #include "core/deformable/touch/haptic_mesh.h"
 #include "core/scene/field.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::scene {
 

@@ -2,12 +2,9 @@
 
 #include <string>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/contact/felt_body.h"
 #include "core/scene/field.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::scene {
 

@@ -3,11 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/scene/shape.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::scene {
 

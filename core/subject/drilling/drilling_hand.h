@@ -3,16 +3,12 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/noise.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::subject {
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/bone/simulator/simulator_tools.h"
 #include "core/device/virtual_device.h"
@@ -12,11 +13,6 @@
 #include "core/subject/drilling/fragment_plan.h"
 #include "core/subject/hand_model.h"
 #include "core/subject/noise.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::subject {
 

@@ -2,15 +2,10 @@
 
 #include <cstdint>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/subject/perceiver/felt.h"
 #include "core/subject/perceiver/judgement.h"
 #include "core/subject/population.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-class Table;
-}  // namespace haptrial
 
 namespace haptrial::subject {
 

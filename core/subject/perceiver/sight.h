@@ -3,10 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::subject {
 

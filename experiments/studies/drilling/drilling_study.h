@@ -7,14 +7,11 @@
 
 #include "analysis/bone_drilling/report/validity_study.h"
 #include "analysis/learning/learning_plan.h"
+#include "core/base/definition/schema_forward.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "experiments/studies/study.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/definition/groups.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::experiments {
 

@@ -5,12 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/simulator.h"
 #include "core/device/device.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

@@ -3,12 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "core/base/camera.h"
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/model/bone_model.h"
 
-namespace haptrial {
-template <class T>
-class Schema;
-}
 namespace haptrial::subject {
 struct CavityParameters;
 }

@@ -4,13 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/second_hand.h"
 #include "core/device/device.h"
-
-namespace haptrial {
-template <class T>
-class Schema;
-}
 
 namespace haptrial::protocols {
 

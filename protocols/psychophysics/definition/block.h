@@ -6,12 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "protocols/definition/session_plan.h"
 #include "protocols/psychophysics/definition/counterbalance.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

@@ -2,12 +2,9 @@
 
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "protocols/psychophysics/definition/read_stages.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
-
-namespace haptrial {
-class Table;
-}  // namespace haptrial
 
 namespace haptrial::protocols {
 

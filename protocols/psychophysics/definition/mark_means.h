@@ -2,10 +2,7 @@
 
 #include <cstdint>
 
-namespace haptrial {
-template <class T>
-class Schema;
-}  // namespace haptrial
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

@@ -9,11 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "protocols/psychophysics/definition/question.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

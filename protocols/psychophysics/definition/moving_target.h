@@ -5,9 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

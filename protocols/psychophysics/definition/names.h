@@ -13,10 +13,7 @@
 
 #include "core/base/definition/expression.h"
 #include "core/base/definition/number_source.h"
-
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

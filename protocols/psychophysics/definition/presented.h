@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/scene/field.h"
 #include "core/scene/read/shape_kinds.h"
 #include "protocols/psychophysics/definition/cursor_parameters.h"
@@ -16,8 +17,7 @@
 
 namespace haptrial {
 class RandomStream;
-class Table;
-}  // namespace haptrial
+}
 
 namespace haptrial::protocols {
 

@@ -5,13 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/base/key_press.h"
 #include "core/questions/question.h"
 #include "protocols/psychophysics/definition/mark_means.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

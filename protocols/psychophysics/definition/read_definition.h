@@ -3,12 +3,9 @@
 #include <memory>
 #include <string_view>
 
+#include "core/base/definition/schema_forward.h"
 #include "protocols/psychophysics/definition/names.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
-
-namespace haptrial {
-class Table;
-}  // namespace haptrial
 
 namespace haptrial::protocols {
 

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "protocols/psychophysics/definition/stage_machine.h"
 
 namespace haptrial {
 class RandomStream;
-class Table;
-}  // namespace haptrial
+}
 
 namespace haptrial::protocols {
 

@@ -4,11 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace haptrial {
-template <class T>
-class Schema;
-class Table;
-}  // namespace haptrial
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

@@ -8,12 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/record/rows/device_rows.h"
 #include "protocols/definition/definition.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::scene {
 struct Field;

@@ -7,9 +7,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace haptrial {
-class Table;
-}
+#include "core/base/definition/schema_forward.h"
 
 namespace haptrial::protocols {
 

@@ -6,13 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/contact/felt_body.h"
 #include "core/deformable/springs/spring_body.h"
 #include "core/deformable/touch/haptic_mesh.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

@@ -6,16 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/subject/perceiver/judgement.h"
 #include "core/subject/perceiver/perceiver_population.h"
 #include "core/subject/perceiver/sight.h"
 #include "core/subject/perceiver/two_rate.h"
 #include "protocols/psychophysics/definition/script_plan.h"
 #include "protocols/psychophysics/subject/stage_actions.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 

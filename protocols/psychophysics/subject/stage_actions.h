@@ -4,11 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/definition/schema_forward.h"
 #include "core/subject/perceiver/probing.h"
-
-namespace haptrial {
-class Table;
-}
 
 namespace haptrial::protocols {
 
