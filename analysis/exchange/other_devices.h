@@ -4,11 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/device_rows.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::exchange {
 

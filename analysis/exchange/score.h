@@ -4,9 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis {
 

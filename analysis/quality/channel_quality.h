@@ -5,10 +5,7 @@
 #include <vector>
 
 #include "core/channel/channel_row.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis {
 

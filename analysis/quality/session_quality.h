@@ -6,12 +6,9 @@
 
 #include "analysis/quality/trial_quality.h"
 #include "analysis/statistics/base/defined.h"
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/session_types.h"
 #include "core/record/rows/trial_facts.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::analysis {
 

@@ -7,11 +7,8 @@
 #include <vector>
 
 #include "analysis/statistics/base/defined.h"
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/session_types.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::analysis {
 

@@ -5,11 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/session_types.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::protocols {
 struct Definition;

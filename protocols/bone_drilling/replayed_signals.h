@@ -12,10 +12,7 @@
 #include "core/bone/nerve/nerve_voice.h"
 #include "core/bone/simulator/drilling_view.h"
 #include "core/record/read/session_reader.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::protocols {
 

@@ -12,14 +12,11 @@
 #include "core/bone/nerve/nerve_beside.h"
 #include "core/bone/nerve/nerve_voice.h"
 #include "core/bone/simulator/simulator.h"
+#include "core/record/read/session_reader_forward.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 #include "protocols/bone_drilling/display/bone_sound.h"
 #include "protocols/bone_drilling/live_tuning.h"
 #include "protocols/interface/trials.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::protocols {
 

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/answer_rows.h"
 #include "core/record/rows/live_figures.h"
 #include "core/record/rows/partner_rows.h"
@@ -23,10 +24,6 @@
 #include "protocols/interface/drawing.h"
 #include "protocols/interface/pass.h"
 #include "protocols/interface/rig.h"
-
-namespace haptrial::record {
-class SessionReader;
-}  // namespace haptrial::record
 
 namespace haptrial::protocols {
 

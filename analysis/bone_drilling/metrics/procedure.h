@@ -15,12 +15,9 @@
 #include "core/bone/model/bone_volume.h"
 #include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/session_types.h"
 #include "core/subject/drilling/fragment_plan.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::subject {
 struct CavityPlan;

@@ -10,10 +10,7 @@
 #include "analysis/bone_drilling/report/with_without.h"
 #include "analysis/document/document.h"
 #include "core/bone/hint/hint_setup.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis::drilling {
 

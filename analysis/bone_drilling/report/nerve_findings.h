@@ -6,10 +6,7 @@
 #include <vector>
 
 #include "analysis/bone_drilling/report/with_without.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis::drilling {
 

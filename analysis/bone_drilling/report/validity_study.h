@@ -9,10 +9,7 @@
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/bone_drilling/report/validity_result.h"
 #include "analysis/document/finding.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis::drilling {
 

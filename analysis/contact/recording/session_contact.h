@@ -4,10 +4,7 @@
 #include <string>
 
 #include "analysis/contact/recording/streams.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::evaluation {
 

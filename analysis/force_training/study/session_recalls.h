@@ -10,10 +10,7 @@
 #include "analysis/force_training/study/recall_frequency.h"
 #include "analysis/force_training/study/study_result.h"
 #include "analysis/statistics/base/defined.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::analysis {
 

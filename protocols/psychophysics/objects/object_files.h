@@ -4,13 +4,10 @@
 #include <string_view>
 #include <vector>
 
+#include "core/record/read/session_reader_forward.h"
 #include "core/record/rows/object_rows.h"
 #include "core/scene/field.h"
 #include "protocols/psychophysics/objects/trial_object.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::protocols {
 

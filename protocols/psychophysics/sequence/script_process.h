@@ -8,10 +8,7 @@
 #include <string>
 
 #include "core/base/child_process.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::protocols {
 

@@ -8,14 +8,11 @@
 #include <vector>
 
 #include "core/psychometric/procedure/procedure.h"
+#include "core/record/read/session_reader_forward.h"
 #include "protocols/psychophysics/definition/script_plan.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/sequence/level_chooser.h"
 #include "protocols/psychophysics/sequence/script_process.h"
-
-namespace haptrial::record {
-class SessionReader;
-}
 
 namespace haptrial::protocols {
 
