@@ -4,7 +4,6 @@
 #include <gsl/gsl_min.h>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -112,25 +111,6 @@ TimeConstant best_time_constant(Points& points) {
   return {std::exp(brent(points, at - step, at, at + step)), false};
 }
 
-void set_errors(const Points& points, double squares, ExponentialFit& fit) {
-  const double t = fit.time_constant;
-  const Eigen::Index n = points.value.size();
-  const Eigen::ArrayXd cycle = Eigen::ArrayXd::LinSpaced(n, 0.0, static_cast<double>(n - 1));
-  const Eigen::ArrayXd decay = (-cycle / t).exp();
-  Eigen::MatrixX3d slopes(n, 3);
-  slopes.col(0).setOnes();
-  slopes.col(1) = decay;
-  slopes.col(2) = fit.amplitude / (t * t) * cycle * decay;
-  const double df = points.count - 3.0;
-  const Eigen::Matrix3d inverse =
-      (slopes.transpose() * points.weight.matrix().asDiagonal() * slopes).inverse();
-  const Eigen::Array3d errors = (inverse.diagonal().array().max(0.0) * squares / df).sqrt();
-  fit.asymptote_error = errors[0];
-  fit.amplitude_error = errors[1];
-  fit.time_constant_error = errors[2];
-  fit.deviation = std::sqrt(squares / df * points.count / points.weight.sum());
-}
-
 /// Points of at least five values that are finite and vary; otherwise why not.
 Defined<Points> points_of(std::span<const double> values, std::span<const double> weights) {
   const Eigen::Index n = std::ssize(values);
@@ -176,10 +156,10 @@ Defined<BoundedFit> bounded_fit(std::span<const double> values, std::span<const 
   const LinearPart part = linear_part(own, best.value);
   BoundedFit result;
   result.at_bound = best.at_bound;
-  result.fit = {part.asymptote, part.amplitude, best.value, 0.0, 0.0, 0.0, 0.0, 0.0};
+  result.fit = {part.asymptote, part.amplitude, best.value, 0.0, 0.0};
   const double mean = (own.weight * own.value).sum() / own.weight.sum();
   result.fit.r_squared = 1.0 - part.squares / (own.weight * (own.value - mean).square()).sum();
-  set_errors(own, part.squares, result.fit);
+  result.fit.deviation = std::sqrt(part.squares / (own.count - 3.0) * own.count / own.weight.sum());
   return result;
 }
 

@@ -13,8 +13,7 @@ struct ExponentialFit {
   double asymptote{0.0};      // where learning ends
   double amplitude{0.0};      // y(0) - asymptote
   double time_constant{1.0};  // [cycles]
-  double asymptote_error{0.0}, amplitude_error{0.0}, time_constant_error{0.0};
-  double deviation{0.0};  // standard deviation of the residuals
+  double deviation{0.0};      // standard deviation of the residuals
   double r_squared{0.0};
 
   double rate() const { return 1.0 / time_constant; }  // per cycle
@@ -22,8 +21,7 @@ struct ExponentialFit {
 };
 
 /// Least squares: at each time constant the other two follow from a linear fit, and Brent's search
-/// (GSL) finds the time constant between 0.1 and ten times the number of cycles. The standard
-/// errors take the values as independent with equal variances.
+/// (GSL) finds the time constant between 0.1 and ten times the number of cycles.
 /// @param weights  as many as the values, >= 0 (number of participants of a mean); empty: all 1.
 /// A value of weight 0 does not count.
 /// Undefined with fewer than five values, one that is not finite, values that do not vary, or when

@@ -78,7 +78,6 @@ Defined<ForceCompensation> force_compensation(std::span<const double> measured,
   const double small = static_cast<double>(n) / static_cast<double>(n - 2);
   const Eigen::Matrix2d covariance = small * whitened_long_run(influence, lags);
   result.slope_error = std::sqrt(std::max(0.0, covariance(0, 0)));
-  result.intercept_error = std::sqrt(std::max(0.0, covariance(1, 1)));
   return result;
 }
 

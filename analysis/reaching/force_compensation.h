@@ -22,7 +22,6 @@ struct ForceCompensation {
   double slope{0.0};
   double intercept{0.0};  // [N]
   double slope_error{0.0};
-  double intercept_error{0.0};  // [N]
   double r_squared{0.0};
   std::size_t samples{0};
 };

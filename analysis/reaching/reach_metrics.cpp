@@ -159,7 +159,6 @@ void measure_end(const Reach& reach, const WayFrame& frame, double radius, Reach
   const Eigen::Vector3d miss = *value_at(reach.time, reach.position, *metrics.end) - reach.target;
   metrics.movement_time = *metrics.end - *metrics.onset;
   metrics.endpoint_error = miss.norm();
-  metrics.endpoint_lateral = frame.lateral(miss);
   metrics.endpoint_extent = frame.along(miss);
   metrics.flags.missed_target = miss.norm() > radius;
 }
@@ -200,8 +199,6 @@ ReachMetrics reach_metrics(const Reach& reach, const MetricOptions& options) {
   metrics.reaction_time = *metrics.onset - reach.go;
   metrics.peak_speed = movement.peak_speed;
   metrics.time_to_peak = *movement.peak_time - *metrics.onset;
-  metrics.peak_speed_error =
-      perpendicular_error_at(reach, metrics, *metrics.time_to_peak, options.normal);
   const double to = metrics.end.value_or(reach.time.back());
   measure_path(cut_out(reach.time, reach.position, *metrics.onset, to), frame, reach.start,
                metrics);

@@ -124,15 +124,12 @@ PositionError position_error(Vectors recorded, Vectors rendered, double threshol
     }
     error.beyond_share += 1.0 / static_cast<double>(recorded.size());
     if (error.places.empty() || error.places.back().last + 1 != i) {
-      error.places.push_back({i, i, i, norm});
+      error.places.push_back({i, i, norm});
       continue;
     }
     ProblemPlace& place = error.places.back();
     place.last = i;
-    if (norm > place.worst) {
-      place.worst = norm;
-      place.worst_sample = i;
-    }
+    place.worst = std::max(place.worst, norm);
   }
   return error;
 }

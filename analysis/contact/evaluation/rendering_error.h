@@ -40,8 +40,7 @@ BandError band_error(std::span<const Eigen::Vector3d> measured,
 /// A stretch of samples whose position error is beyond a threshold.
 struct ProblemPlace {
   std::size_t first{0}, last{0};  // samples, both inclusive
-  std::size_t worst_sample{0};
-  double worst{0.0};  // [m]
+  double worst{0.0};              // [m]
 };
 
 struct PositionError {

@@ -95,7 +95,6 @@ void fit_torques(const ForceStream& force, const std::vector<Eigen::Matrix3d>& t
       x, y, {"centre x", "centre y", "centre z", "torque x", "torque y", "torque z"}, {10, 0.95});
   fit.load.centre = found.coefficients.head<3>();
   fit.load.torque_offset = found.coefficients.tail<3>();
-  fit.torque_rms = found.residual_rms;
   fit.unfixed.insert(fit.unfixed.end(), found.confounded.begin(), found.confounded.end());
 }
 

@@ -30,7 +30,6 @@ struct SensorLoad {
 struct LoadFit {
   SensorLoad load;
   double force_rms{0.0};             // left without contact, each component [N]
-  double torque_rms{0.0};            // [N·m]
   std::vector<std::string> unfixed;  // sentences: what the orientations do not tell apart
 };
 

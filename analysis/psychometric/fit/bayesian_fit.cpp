@@ -198,7 +198,6 @@ BayesianFit bayesian_fit(std::span<const TrialBlock> blocks, const BayesianOptio
   fit.mean = parameters_of(mean, options.task);
   fit.map = parameters_of(climbed(posterior, options.task, axes, masses.largest), options.task);
   fit.log_posterior = posterior.log_density(fit.map);
-  fit.log_evidence = std::log(masses.sum) + masses.log_largest;
   add_intervals(fit, masses, axes, options);
   if (options.task == Task::kEqualAsymptote) {
     follow_lapse(fit);

@@ -41,7 +41,6 @@ struct BayesianFit {
   FittedParameters map;       // largest posterior density
   FittedParameters mean;      // posterior mean
   double log_posterior{0.0};  // at the map: prior and likelihood without binomial coefficients
-  double log_evidence{0.0};   // logarithm of the integral over the grid
   std::array<std::vector<CredibleInterval>, kDimensions> intervals;  // as BayesianOptions::levels
   std::vector<TrialBlock> blocks;                                    // as they were fitted
   PsychometricDeviance deviance;                                     // of the map

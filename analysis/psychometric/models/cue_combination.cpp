@@ -99,7 +99,6 @@ Defined<ObservedWeight> observed_weight(std::span<const ConflictPse> conflicts, 
   const double error = 1.0 / std::sqrt(xx);
   result.first_weight = {slope, error, slope - z * error, slope + z * error};
   result.bias = y_mean - slope * x_mean;
-  result.bias_error = std::sqrt(1.0 / total + x_mean * x_mean / xx);
   result.df = conflicts.size() - 2;
   for (const ConflictPse& c : conflicts) {
     const double left = c.pse.value - c.second - result.bias - slope * (c.first - c.second);
@@ -123,9 +122,7 @@ CueComparison compare_cues(std::span<const CueParticipant> participants, double 
     predicted_logs.push_back(std::log(sds.back()));
     best_logs.push_back(std::log(std::min(p.first_sd, p.second_sd)));
   }
-  return {predicted,
-          sds,
-          paired_t_test(weights, predicted, Tail::kTwoSided, level),
+  return {paired_t_test(weights, predicted, Tail::kTwoSided, level),
           paired_t_test(observed_logs, predicted_logs, Tail::kTwoSided, level),
           paired_t_test(observed_logs, best_logs, Tail::kLess, level),
           pearson_correlation(weights, predicted, level)};

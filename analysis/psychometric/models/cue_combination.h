@@ -53,7 +53,6 @@ struct ConflictPse {
 struct ObservedWeight {
   CuePrediction first_weight;  // not held inside (0, 1)
   double bias{0.0};
-  double bias_error{0.0};
   double chi_squared{0.0};  // of what is left; its expectation is `df`
   std::size_t df{0};
 };
@@ -78,12 +77,10 @@ struct CueParticipant {
 /// itself when these have the relative errors ε (1 % at 15 %). The better of two estimated cues is
 /// better by luck, too: `beats_best` is therefore conservative.
 struct CueComparison {
-  std::vector<double> predicted_weights;  // (n) of the first cue
-  std::vector<double> predicted_sds;      // (n)
-  Defined<TTest> weight;                  // observed - predicted, two-sided (paired_t_test)
-  Defined<TTest> log_sd;                  // log observed - log predicted, two-sided
-  Defined<TTest> beats_best;              // log observed < log of the better single cue, one-sided
-  Defined<Correlation> weights;           // observed with predicted, Pearson
+  Defined<TTest> weight;         // observed - predicted, two-sided (paired_t_test)
+  Defined<TTest> log_sd;         // log observed - log predicted, two-sided
+  Defined<TTest> beats_best;     // log observed < log of the better single cue, one-sided
+  Defined<Correlation> weights;  // observed with predicted, Pearson
 };
 
 /// @throws std::invalid_argument naming a standard deviation that is not above 0.

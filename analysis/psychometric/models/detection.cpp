@@ -95,11 +95,6 @@ Defined<Detection> detection(const DetectionCounts& counts, RateCorrection corre
   const double sum = hits->z() + alarms->z();
   const bool rounding = std::abs(sum) <= 1e-15 * std::abs(hits->z());
   d.criterion = rounding ? 0.0 : -0.5 * sum;
-  if (d.d_prime != 0.0) {
-    d.relative_criterion = d.criterion / d.d_prime;
-  } else {
-    d.relative_criterion = Undefined{"d' is 0"};
-  }
   d.log_beta = d.criterion * (hits->z() - alarms->z());
   d.error = std::sqrt(hits->variance() + alarms->variance());
   const double z = normal_quantile(0.5 + 0.5 * level);

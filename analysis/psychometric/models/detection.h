@@ -23,12 +23,11 @@ enum class RateCorrection {
 
 /// Equal-variance indices of yes/no detection, z the normal quantile, H and F the rates:
 ///
-///     d' = z(H) - z(F),   c = -(z(H) + z(F)) / 2,   c' = c / d',   ln beta = c d'
+///     d' = z(H) - z(F),   c = -(z(H) + z(F)) / 2,   ln beta = c d'
 struct Detection {
   double hit_rate{0.0}, false_alarm_rate{0.0};  // corrected
   double d_prime{0.0};
-  double criterion{0.0};                              // c: above 0 for fewer "yes"
-  Defined<double> relative_criterion{Undefined{""}};  // c', undefined for d' = 0
+  double criterion{0.0};  // c: above 0 for fewer "yes"
   double log_beta{0.0};
   double error{0.0};           // standard error of d' (Gourevitch and Galanter 1967)
   double low{0.0}, high{0.0};  // normal interval of d'

@@ -141,7 +141,6 @@ BinormalRoc described(const RatingCounts& used, const ScoringMaximum& fit, doubl
   by[1] = -roc.a * roc.b / (length * length * length);
   const auto solved = solve_positive(fit.point.information, by);
   const double error = solved ? std::sqrt(by.dot(solved->col(0))) : 0.0;
-  roc.area_error = error * density(z);
   const double wide = normal_quantile(0.5 + 0.5 * level) * error;
   roc.area_low = 1.0 - normal_upper_tail(z - wide);
   roc.area_high = 1.0 - normal_upper_tail(z + wide);

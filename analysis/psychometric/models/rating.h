@@ -29,11 +29,11 @@ struct BinormalRoc {
   double b{1.0};
   double d_a{0.0};   // sqrt 2 a / sqrt(1 + b^2): d' where the variances are equal
   double area{0.0};  // A_z
-  double area_error{0.0}, area_low{0.0}, area_high{0.0};  // interval by the normal quantile of A_z
-  std::vector<double> criteria;                           // (ratings - 1) rising
-  double log_likelihood{0.0};                             // without multinomial coefficients
-  double deviance{0.0};                                   // against the observed shares
-  int df{0};                                              // of the deviance: ratings - 3
+  double area_low{0.0}, area_high{0.0};  // interval by the normal quantile of A_z
+  std::vector<double> criteria;          // (ratings - 1) rising
+  double log_likelihood{0.0};            // without multinomial coefficients
+  double deviance{0.0};                  // against the observed shares
+  int df{0};                             // of the deviance: ratings - 3
 };
 
 /// Ratings that nobody gave are dropped. Undefined unless at least three ratings remain and the

@@ -55,29 +55,6 @@ TEST(ExponentialFitTest, AWeightIsAValueThatComesTwice) {
   EXPECT_NEAR(fit_exponential(exponential(1.0, 4.0, 3.0, 12), twice)->time_constant, 3.0, 1e-6);
 }
 
-TEST(ExponentialFitTest, StandardErrorsAreThoseOfManyFits) {
-  constexpr int kFits = 2000;
-  RandomStream random(11, "noise");
-  Eigen::Array3d sum = Eigen::Array3d::Zero(), squares = sum, stated = sum;
-  for (int i = 0; i < kFits; ++i) {
-    std::vector<double> values = exponential(1.0, 4.0, 5.0, 40);
-    for (double& v : values) {
-      v += 0.1 * random.normal();
-    }
-    const auto fit = fit_exponential(values);
-    const Eigen::Array3d at(fit->asymptote, fit->amplitude, fit->time_constant);
-    sum += at / kFits;
-    squares += at.square() / kFits;
-    stated += Eigen::Array3d(fit->asymptote_error, fit->amplitude_error, fit->time_constant_error) /
-              kFits;
-  }
-  const Eigen::Array3d real = (squares - sum.square()).sqrt();
-  for (int k = 0; k < 3; ++k) {
-    // A standard deviation of 2,000 values is known to 1.6 %.
-    EXPECT_NEAR(stated[k] / real[k], 1.0, 0.05) << k;
-  }
-}
-
 TEST(ExponentialFitTest, WhatIsNoExponentialIsSaid) {
   std::vector<double> line, step(20, 1.0);
   for (int n = 0; n < 20; ++n) {

@@ -70,7 +70,7 @@ TEST(RenderingErrorTest, PlacesBeyondTheThresholdAreFound) {
   ASSERT_EQ(error.places.size(), 2u);
   EXPECT_EQ(error.places[0].first, 2u);
   EXPECT_EQ(error.places[0].last, 3u);
-  EXPECT_EQ(error.places[0].worst_sample, 3u);
+  EXPECT_EQ(error.places[0].worst, 0.005);
   EXPECT_EQ(error.places[1].first, 7u);
   EXPECT_EQ(error.places[1].last, 7u);
   EXPECT_NEAR(error.beyond_share, 0.3, 1e-15);

@@ -72,7 +72,6 @@ TEST(CueCombinationTest, TheObservedWeightIsTheSlopeOverConflicts) {
   EXPECT_EQ(observed->df, 3u);
   // The error of a slope of five values with error 0.5 at -6 .. 6: 0.5 / sqrt(90).
   EXPECT_NEAR(observed->first_weight.error, 0.5 / std::sqrt(90.0), 1e-14);
-  EXPECT_NEAR(observed->bias_error, 0.5 / std::sqrt(5.0), 1e-14);
 }
 
 TEST(CueCombinationTest, APreciseValueWeighsMore) {
