@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <utility>
 
 #include "analysis/exchange/columns.h"
 #include "analysis/exchange/bids_text.h"

@@ -13,7 +13,6 @@
 #include "analysis/exchange/sample_text.h"
 #include "analysis/files/gzip_file.h"
 #include "analysis/files/new_folder.h"
-#include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 
 namespace haptrial::exchange {

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 #include "analysis/document/palette.h"
 #include "analysis/statistics/design/compared_sides.h"
 #include "analysis/statistics/design/design_blocks.h"
 #include "analysis/statistics/design/design_lines.h"
 #include "analysis/statistics/design/wording.h"
-#include "core/base/error.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "analysis/python/arrays.h"
 #include "core/base/definition/table.h"
-#include "core/base/error.h"
 #include "core/psychometric/definition/expectation.h"
 #include "core/psychometric/definition/procedure_kinds.h"
 #include "core/psychometric/definition/read_tracks.h"

@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "analysis/python/arrays.h"
 #include "core/base/error.h"

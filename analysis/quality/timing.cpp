@@ -1,7 +1,5 @@
 #include "analysis/quality/timing.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

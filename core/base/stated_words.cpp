@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <locale>
 #include <stdexcept>
-#include <string>
 
 #include "core/base/utf8.h"
 

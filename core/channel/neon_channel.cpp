@@ -7,9 +7,7 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <thread>
-#include <utility>
 
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"

@@ -1,7 +1,6 @@
 #include "core/contact/field_renderers.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/geometry/mesh/mesh_size.h"

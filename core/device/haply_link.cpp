@@ -18,7 +18,6 @@
 #include <chrono>
 #include <optional>
 #include <thread>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/realtime/latest_value.h"

@@ -1,6 +1,5 @@
 #include "core/device/motor_faults.h"
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>

@@ -1,7 +1,5 @@
 #include "core/scene/hold.h"
 
-#include <cmath>
-
 #include "core/base/require.h"
 
 namespace haptrial::scene {

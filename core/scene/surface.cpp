@@ -1,9 +1,7 @@
 #include "core/scene/surface.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/base/require.h"
 #include "core/contact/normal_spring.h"
 
 namespace haptrial::scene {

@@ -1,7 +1,5 @@
 #include "core/tutoring/held_force.h"
 
-#include <algorithm>
-
 #include "core/base/longer.h"
 
 namespace haptrial::tutoring {

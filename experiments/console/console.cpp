@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/base/error.h"
 #include "experiments/console/console_messages.h"
 #include "experiments/server/server.h"
 

@@ -8,7 +8,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <ctime>
-#include <initializer_list>
 
 #include "experiments/control/keyboard.h"
 

@@ -5,7 +5,6 @@
 #include <ostream>
 #include <string>
 
-#include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/base/whole_file.h"
 #include "experiments/preview/preview.h"

@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/session_controller.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "core/base/utf8.h"
 

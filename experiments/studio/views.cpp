@@ -2,7 +2,6 @@
 #include <stdlib.h>  // mkdtemp
 #include <unistd.h>
 
-#include <atomic>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>

@@ -1,10 +1,7 @@
 #include "protocols/bone_drilling/drilling_pass.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "core/base/shortest_turn.h"
 #include "core/control/pd_controller.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/base/counted.h"
 #include "core/base/definition/schema.h"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <map>
 
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/metrics/quantities.h"

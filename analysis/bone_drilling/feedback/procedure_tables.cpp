@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "analysis/bone_drilling/feedback/page_frame.h"
 #include "analysis/bone_drilling/feedback/range_plot.h"

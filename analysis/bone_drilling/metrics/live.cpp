@@ -1,7 +1,6 @@
 #include "analysis/bone_drilling/metrics/live.h"
 
 #include <stdexcept>
-#include <utility>
 
 #include "analysis/bone_drilling/metrics/in_order.h"
 

@@ -1,7 +1,5 @@
 #include "analysis/bone_drilling/report/checklist_section.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <map>
 #include <set>

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "core/base/definition/given_in.h"

@@ -1,7 +1,5 @@
 #include "analysis/bone_drilling/report/validity_study.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 #include <map>

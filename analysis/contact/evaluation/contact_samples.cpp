@@ -1,6 +1,5 @@
 #include "analysis/contact/evaluation/contact_samples.h"
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 

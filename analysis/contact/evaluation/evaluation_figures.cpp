@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "analysis/contact/evaluation/evaluation_report.h"
 #include "analysis/document/palette.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <numbers>
 
 #include "core/contact/renderer_kinds.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <set>
 
 #include "analysis/document/recorded_times.h"
 #include "analysis/statistics/design/wording.h"

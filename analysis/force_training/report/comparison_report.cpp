@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
@@ -12,7 +11,6 @@
 #include "analysis/document/report_style.h"
 #include "analysis/force_training/report/comparison.h"
 #include "analysis/statistics/design/wording.h"
-#include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
 

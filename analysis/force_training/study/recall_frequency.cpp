@@ -1,7 +1,6 @@
 #include "analysis/force_training/study/recall_frequency.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>

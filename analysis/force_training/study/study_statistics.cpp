@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 #include <set>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "analysis/force_training/score/trial_score.h"

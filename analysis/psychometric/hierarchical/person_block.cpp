@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace haptrial::analysis::hierarchical {
 PersonBlock::PersonBlock(const Model& model, std::size_t person)

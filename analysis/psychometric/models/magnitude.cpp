@@ -1,6 +1,5 @@
 #include "analysis/psychometric/models/magnitude.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>

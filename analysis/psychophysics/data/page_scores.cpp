@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <utility>
 
 #include "analysis/psychophysics/data/trials_data.h"
 #include "analysis/statistics/base/descriptive.h"

@@ -1,8 +1,6 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
-#include <string_view>
 
 #include "analysis/document/palette.h"
 #include "analysis/psychophysics/report/trials_figures.h"

@@ -1,7 +1,5 @@
 #include "analysis/psychophysics/report/report_apparatus.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 
 #include "analysis/psychophysics/report/trials_report.h"

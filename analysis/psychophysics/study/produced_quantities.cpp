@@ -1,6 +1,5 @@
 #include "analysis/psychophysics/study/produced_quantities.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>

@@ -1,7 +1,5 @@
 #include "analysis/statistics/design/compared_sides.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>

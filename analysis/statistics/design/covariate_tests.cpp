@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <vector>
 
 #include "analysis/statistics/relation/mixed_contrast.h"

@@ -1,6 +1,5 @@
 #include "analysis/statistics/relation/random_blocks.h"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>

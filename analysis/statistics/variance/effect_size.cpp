@@ -2,7 +2,6 @@
 
 #include <gsl/gsl_sf_gamma.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 

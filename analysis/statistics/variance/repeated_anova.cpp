@@ -1,7 +1,5 @@
 #include "analysis/statistics/variance/repeated_anova.h"
 
-#include <string>
-
 #include "analysis/statistics/base/descriptive.h"
 
 namespace haptrial::analysis {

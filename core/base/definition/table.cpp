@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "core/base/definition/table_internal.h"
 #include "core/base/definition/table_words_internal.h"

@@ -1,7 +1,6 @@
 #include "core/bone/data/bone_summary.h"
 
 #include <array>
-#include <cmath>
 
 namespace haptrial::bone {
 namespace {

@@ -1,8 +1,6 @@
 #include "core/bone/data/ear_anatomy.h"
 
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 
 #include "core/base/random.h"
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "core/bone/data/ear_anatomy.h"
 

@@ -9,7 +9,6 @@
 #include <sstream>
 
 #include "core/base/definition/table.h"
-#include "core/base/error.h"
 #include "core/bone/data/anatomy.h"
 
 namespace haptrial::bone {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <set>
 #include <sstream>
 
 #include "core/base/error.h"

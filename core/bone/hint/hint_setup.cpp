@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <vector>
-
 #include "core/base/definition/schema.h"
 #include "core/base/error.h"
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <map>
 #include <unordered_set>
-#include <utility>
 
 #include "core/bone/model/world.h"
 

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "core/bone/simulator/saw.h"
 

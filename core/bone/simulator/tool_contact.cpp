@@ -1,7 +1,6 @@
 #include "core/bone/simulator/tool_contact.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace haptrial::bone {

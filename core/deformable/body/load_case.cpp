@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <limits>
 
 #include "core/base/error.h"
 #include "core/deformable/body/mesh_parts.h"

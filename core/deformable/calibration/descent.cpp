@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <exception>
-#include <functional>
 #include <memory>
 
 #include "core/deformable/calibration/global_start.h"

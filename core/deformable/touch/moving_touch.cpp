@@ -1,7 +1,6 @@
 #include "core/deformable/touch/moving_touch.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/deformable/touch/ball_touch.h"

@@ -2,9 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include <cstring>
 #include <iterator>
-#include <span>
 
 #include "core/geometry/files/mesh_io.h"
 

@@ -1,11 +1,8 @@
 #include "core/geometry/volume/voxelize.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "core/base/error.h"

@@ -1,6 +1,5 @@
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 
 #include "core/base/instruction_set.h"
 #include "core/geometry/volume/boundary_cone.h"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <vector>
 
 #include "core/psychometric/definition/grid.h"
 #include "core/psychometric/definition/track.h"

@@ -1,7 +1,6 @@
 #include "core/record/hdf5/hdf5_layer.h"
 
 #include <array>
-#include <utility>
 
 #include "core/record/hdf5/hdf5_internal.h"
 

@@ -1,7 +1,6 @@
 #include "core/record/read/readable.h"
 
 #include <algorithm>
-#include <string_view>
 #include <system_error>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #include <map>
 #include <set>
 #include <stdexcept>
-#include <string>
 
 #include "core/record/rows/answer_rows.h"
 #include "core/record/rows/device_rows.h"

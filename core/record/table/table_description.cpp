@@ -1,9 +1,6 @@
 #include "core/record/table/table_description.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cstring>
 #include <set>
 #include <stdexcept>
 #include <string_view>

@@ -2,8 +2,6 @@
 
 #include <GL/glcorearb.h>
 
-#include <cmath>
-
 #include "core/base/error.h"
 #include "core/render/gl/gl.h"
 

@@ -1,11 +1,9 @@
 #include "core/render/bone/surgical_field.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <span>
 
 namespace haptrial::render {
 namespace {

@@ -1,7 +1,5 @@
 #include "core/render/gl/pixel_tiles.h"
 
-#include <algorithm>
-
 namespace haptrial::render {
 namespace {
 

@@ -1,7 +1,5 @@
 #include "core/subject/drilling/assisting_hand.h"
 
-#include <algorithm>
-
 #include "core/subject/drilling/drilling_arm.h"
 
 namespace haptrial::subject {

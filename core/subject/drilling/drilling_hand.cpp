@@ -1,7 +1,5 @@
 #include "core/subject/drilling/drilling_hand.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <filesystem>
 
-#include "core/base/error.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"

@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <optional>
 
 #include "core/base/error.h"

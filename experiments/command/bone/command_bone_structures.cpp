@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "core/base/error.h"
 #include "core/base/toml_text.h"
 #include "core/base/whole_file.h"
 #include "core/bone/data/anatomy.h"

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <iterator>
 
 #include "analysis/document/figure_gnuplot.h"

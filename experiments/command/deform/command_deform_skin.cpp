@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "analysis/files/new_folder.h"
-#include "core/base/error.h"
 #include "core/deformable/body/skin.h"
 #include "core/geometry/files/mesh_io.h"
 #include "experiments/command/arguments.h"

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 
-#include "core/base/error.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/subcommand.h"

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "core/base/child_process.h"
-#include "core/base/error.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"

@@ -6,9 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <exception>
-#include <functional>
 #include <map>
-#include <memory>
 #include <set>
 
 #include "core/base/definition/table.h"

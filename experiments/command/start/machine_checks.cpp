@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <system_error>
 #include <thread>
 
-#include "core/base/error.h"
 #include "core/base/exception_words.h"
 #include "core/base/whole_file.h"
 #include "core/device/catalog.h"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <system_error>
 
 #include "analysis/bone_drilling/report/learned_quantities.h"
@@ -15,7 +14,6 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
-#include "core/render/mesh/scene.h"
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/drilling/learn_phases.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"

@@ -17,7 +17,6 @@
 #include "experiments/runner/version.h"
 #include "experiments/studies/experiment.h"
 #include "experiments/studies/psychophysics/trials_analysis.h"
-#include "experiments/studies/psychophysics/trials_study.h"
 #include "experiments/study/session_name.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
 #include "protocols/psychophysics/trials_protocol.h"

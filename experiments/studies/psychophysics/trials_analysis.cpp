@@ -12,10 +12,8 @@
 #include "analysis/psychophysics/study/pursuit_quantities.h"
 #include "analysis/psychophysics/study/reach_quantities.h"
 #include "core/base/definition/table.h"
-#include "core/base/error.h"
 #include "experiments/studies/psychophysics/reach_routes.h"
 #include "protocols/psychophysics/definition/trials_definition.h"
-#include "protocols/psychophysics/trials_protocol.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <string>
-#include <variant>
 
 #include "core/base/definition/table.h"
 #include "core/scene/read/read_deformable.h"

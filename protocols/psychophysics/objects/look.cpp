@@ -1,7 +1,6 @@
 #include "protocols/psychophysics/objects/look.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "core/base/definition/schema.h"

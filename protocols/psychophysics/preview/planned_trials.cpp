@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 #include "protocols/psychophysics/studied_definition.h"
