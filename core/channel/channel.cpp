@@ -57,12 +57,7 @@ Channel::Channel(ChannelOptions options, Now now, std::uint64_t first)
       next_(first) {
   state_.values.fill(std::numeric_limits<double>::quiet_NaN());
   newest_ = seen_ = state_;
-  thread_ = std::thread([this] { run(); });
-}
-
-Channel::~Channel() {
-  over_.store(true, std::memory_order_relaxed);
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 std::string Channel::wait_until_open() {
@@ -185,11 +180,10 @@ void Channel::compare_with_limit(std::span<const double> values) {
   }
 }
 
-void Channel::run() {
-  while (!over_.load(std::memory_order_relaxed)) {
+void Channel::run(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
     if (source_ == nullptr && !open()) {
-      for (milliseconds waited{0}; waited < kRetry && !over_.load(std::memory_order_relaxed);
-           waited += kLook) {
+      for (milliseconds waited{0}; waited < kRetry && !stop.stop_requested(); waited += kLook) {
         std::this_thread::sleep_for(kLook);
       }
     } else if (reading_.load(std::memory_order_relaxed) || !source_->keeps_samples()) {

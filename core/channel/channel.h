@@ -42,7 +42,6 @@ class Channel final : private ChannelInbox {
   /// Starts the thread, which opens the instrument; its samples count from begin() on. @param first
   /// number of the first sample: of those that an earlier run of the session has
   Channel(ChannelOptions options, Now now, std::uint64_t first = 0);
-  ~Channel() override;
   Channel(const Channel&) = delete;
   Channel& operator=(const Channel&) = delete;
 
@@ -76,7 +75,7 @@ class Channel final : private ChannelInbox {
     note(what, amount, text, std::nullopt);
   }
   std::int64_t now() const override { return now_(); }
-  void run();
+  void run(const std::stop_token& stop);
   bool open();
   void read();
   bool is_useful(std::span<const double> values) const;
@@ -114,8 +113,7 @@ class Channel final : private ChannelInbox {
   bool tried_{false};
   std::string error_;
   std::atomic<bool> reading_{false};  // begin() was called
-  std::atomic<bool> over_{false};
-  std::thread thread_;
+  std::jthread thread_;               // last: it uses the others
 };
 
 }  // namespace haptrial::channel

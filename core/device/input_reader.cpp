@@ -15,12 +15,7 @@ constexpr std::chrono::milliseconds kRetry{500};  // until a lost device is look
 
 InputReader::InputReader(std::string path, Use use) : path_(std::move(path)), use_(std::move(use)) {
   open();
-  thread_ = std::thread([this] { read(); });
-}
-
-InputReader::~InputReader() {
-  over_.store(true, std::memory_order_relaxed);
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { read(stop); });
 }
 
 std::vector<InputChange> InputReader::take_changes() {
@@ -35,10 +30,10 @@ void InputReader::open() {
   use_.show(&file_->reports());
 }
 
-void InputReader::read() {
-  while (!over_.load(std::memory_order_relaxed)) {
+void InputReader::read(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
     if (file_ == nullptr) {
-      try_again();
+      try_again(stop);
     } else if (file_->wait(kLook)) {
       use_.show(&file_->reports());
     } else {
@@ -54,9 +49,8 @@ void InputReader::lose() {
   file_.reset();
 }
 
-void InputReader::try_again() {
-  for (auto waited = kLook; waited <= kRetry && !over_.load(std::memory_order_relaxed);
-       waited += kLook) {
+void InputReader::try_again(const std::stop_token& stop) {
+  for (auto waited = kLook; waited <= kRetry && !stop.stop_requested(); waited += kLook) {
     std::this_thread::sleep_for(kLook);
   }
   try {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -33,7 +32,6 @@ class InputReader {
 
   /// @throws InputError as InputFile and Use::open do
   InputReader(std::string path, Use use);
-  ~InputReader();
   InputReader(const InputReader&) = delete;
   InputReader& operator=(const InputReader&) = delete;
 
@@ -43,17 +41,16 @@ class InputReader {
 
  private:
   void open();
-  void read();
+  void read(const std::stop_token& stop);
   void lose();
-  void try_again();
+  void try_again(const std::stop_token& stop);
 
   std::string path_;
   Use use_;
   std::unique_ptr<InputFile> file_;  // null while it is lost; the reading thread's
   std::mutex mutex_;
   std::vector<InputChange> changes_;
-  std::atomic<bool> over_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it uses the others
 };
 
 }  // namespace haptrial::device

@@ -33,16 +33,7 @@ std::int64_t wall_time() {
 
 NeonEvents::NeonEvents(const std::string& address, std::function<std::int64_t()> now)
     : host_(address.substr(0, address.rfind(':'))), port_(port_of(address)), now_(std::move(now)) {
-  thread_ = std::thread([this] { run(); });
-}
-
-NeonEvents::~NeonEvents() {
-  {
-    const std::lock_guard lock(mutex_);
-    over_ = true;
-  }
-  changed_.notify_all();
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 void NeonEvents::send(const TimedOnset& onset, std::string name) {
@@ -53,13 +44,9 @@ void NeonEvents::send(const TimedOnset& onset, std::string name) {
   changed_.notify_all();
 }
 
-void NeonEvents::run() {
+void NeonEvents::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (true) {
-    changed_.wait(lock, [this] { return over_ || !asked_.empty(); });
-    if (over_) {
-      return;
-    }
+  while (changed_.wait(lock, stop, [this] { return !asked_.empty(); }) && !stop.stop_requested()) {
     const PendingEvent asked = asked_.front();
     lock.unlock();
     const std::string wrong = post(asked);

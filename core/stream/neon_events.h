@@ -21,14 +21,13 @@ struct NeonEvent {
 };
 
 /// Sends onsets to the phone of a Pupil Labs Neon as events of its recording, each with the time of
-/// its tick, from a thread of its own: a phone takes milliseconds to answer, and may be away.
+/// its tick, from a thread of its own: a phone takes milliseconds to answer, and may be away. The
+/// destructor waits for the phone's answer to what was sent last; the rest is left.
 class NeonEvents {
  public:
   /// @param address  of the phone: "HOST" or "HOST:PORT"
   /// @param now      the session's clock [ns], asked by the thread
   NeonEvents(const std::string& address, std::function<std::int64_t()> now);
-  /// Waits for the phone's answer to what was sent last; the rest is left.
-  ~NeonEvents();
   NeonEvents(const NeonEvents&) = delete;
   NeonEvents& operator=(const NeonEvents&) = delete;
 
@@ -48,19 +47,18 @@ class NeonEvents {
     TimedOnset onset;
     std::string name;
   };
-  void run();
+  void run(const std::stop_token& stop);
   std::string post(const PendingEvent& asked) const;
 
   std::string host_;
   int port_;
   std::function<std::int64_t()> now_;
   mutable std::mutex mutex_;  // all that follow
-  std::condition_variable changed_;
+  std::condition_variable_any changed_;
   std::deque<PendingEvent> asked_;  // the first is under way
   std::vector<NeonEvent> sent_;
   std::string trouble_;
-  bool over_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it uses the others
 };
 
 }  // namespace haptrial::markers

@@ -6,16 +6,7 @@ namespace haptrial::experiments {
 
 Speaker::Speaker(Engine engine, sound::CuePlayer& player, std::string seconds)
     : engine_(std::move(engine)), player_(player), seconds_(std::move(seconds)) {
-  thread_ = std::thread([this] { run(); });
-}
-
-Speaker::~Speaker() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wanted_.notify_one();
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 void Speaker::follow(const protocols::PictureText& text, const std::string& words) {
@@ -76,13 +67,9 @@ std::vector<SpokenText> Speaker::take_spoken() {
 }
 
 /// A text that was replaced while its samples were made is not said.
-void Speaker::run() {
+void Speaker::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
-  while (true) {
-    wanted_.wait(lock, [this] { return stop_ || next_; });
-    if (stop_) {
-      return;
-    }
+  while (wanted_.wait(lock, stop, [this] { return next_.has_value(); }) && !stop.stop_requested()) {
     const std::string text = *std::exchange(next_, std::nullopt);
     const std::uint64_t number = newest_;
     at_work_ = true;

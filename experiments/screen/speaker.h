@@ -34,7 +34,6 @@ class Speaker {
 
   /// @param player  outlives the speaker  @param seconds  the word, for a countdown
   Speaker(Engine engine, sound::CuePlayer& player, std::string seconds);
-  ~Speaker();
   Speaker(const Speaker&) = delete;
   Speaker& operator=(const Speaker&) = delete;
 
@@ -51,7 +50,7 @@ class Speaker {
  private:
   void say(std::string text);
   void be_silent(bool cut);
-  void run();
+  void run(const std::stop_token& stop);
 
   Engine engine_;
   sound::CuePlayer& player_;
@@ -60,14 +59,13 @@ class Speaker {
   std::string words_;
 
   mutable std::mutex mutex_;  // all that follow
-  std::condition_variable wanted_;
-  std::uint64_t newest_{0};          // number of the newest text
-  std::optional<std::string> next_;  // the newest text, while nobody has taken it
-  bool at_work_{false};              // on samples of a text
-  bool stop_{false};
+  std::condition_variable_any wanted_;
+  std::uint64_t newest_{0};                     // number of the newest text
+  std::optional<std::string> next_;             // the newest text, while nobody has taken it
+  bool at_work_{false};                         // on samples of a text
   std::map<std::uint64_t, std::string> texts_;  // by number, those that have not begun
 
-  std::thread thread_;  // last: it uses the others
+  std::jthread thread_;  // last: it uses the others
 };
 
 }  // namespace haptrial::experiments

@@ -122,14 +122,7 @@ SlowBody::SlowBody(const SharedMovingBody& body, SharedWindowCompliance complian
   described_.assign(samples, 0);
   loads_.resize(3 * BallContact::kMostPlaces);
   if (threaded) {
-    thread_ = std::thread([this] { run(); });
-  }
-}
-
-SlowBody::~SlowBody() {
-  stop_.store(true, std::memory_order_relaxed);
-  if (thread_.joinable()) {
-    thread_.join();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 }
 
@@ -145,9 +138,9 @@ const LocalSurface* SlowBody::take() noexcept {
   return turn_.take() ? &slots_[turn_.reading()] : nullptr;
 }
 
-void SlowBody::run() {
+void SlowBody::run(const std::stop_token& stop) {
   BodyPath path;
-  while (!stop_.load(std::memory_order_relaxed)) {
+  while (!stop.stop_requested()) {
     if (paths_.read(path)) {
       advance(path);
     } else {

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <thread>
@@ -68,7 +67,6 @@ class SlowBody {
   SlowBody(const SharedMovingBody& body, SharedWindowCompliance compliance,
            const TouchOptions& options, double period, int window, bool threaded,
            std::shared_ptr<MovingShape> shape);
-  ~SlowBody();
   SlowBody(const SlowBody&) = delete;
   SlowBody& operator=(const SlowBody&) = delete;
 
@@ -86,7 +84,7 @@ class SlowBody {
     Eigen::Vector3f force;  // along the normal, mean of the last tick [N]
   };
 
-  void run();
+  void run(const std::stop_token& stop);
   void advance(const BodyPath& path) noexcept;
   void describe(const BodyPath& path, LocalSurface& to) noexcept;
   void find_near(const Eigen::Vector3d& centre, double reach) noexcept;
@@ -118,8 +116,7 @@ class SlowBody {
   std::array<LocalSurface, realtime::HandOver::kSlots> slots_;
   realtime::HandOver turn_;
   realtime::LatestValue<BodyPath> paths_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
+  std::jthread thread_;  // last: it uses the others
 };
 
 }  // namespace haptrial::deformable

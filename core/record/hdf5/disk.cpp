@@ -97,16 +97,7 @@ DiskSync::Place place_of(int descriptor, const std::filesystem::path& path) noex
 
 DiskSync::DiskSync(int descriptor, std::filesystem::path path, std::chrono::milliseconds period)
     : descriptor_(descriptor), path_(std::move(path)), period_(period) {
-  thread_ = std::thread([this] { run(); });
-}
-
-DiskSync::~DiskSync() {
-  {
-    const std::lock_guard lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 void DiskSync::soon() {
@@ -122,7 +113,7 @@ std::string DiskSync::failure() const {
   return failure_;
 }
 
-void DiskSync::run() {
+void DiskSync::run(const std::stop_token& stop) {
   // A signal must not land on a thread that a slow disk holds.
   sigset_t all;
   sigfillset(&all);
@@ -130,8 +121,8 @@ void DiskSync::run() {
   for (;;) {
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, period_, [this] { return asked_ || stop_; });
-      if (stop_) {
+      wake_.wait_for(lock, stop, period_, [this] { return asked_; });
+      if (stop.stop_requested()) {
         return;
       }
       asked_ = false;

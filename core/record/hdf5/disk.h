@@ -43,13 +43,12 @@ void divert(int descriptor) noexcept;
 
 /// Brings a file to the disk from a thread of its own, so that nobody waits for a slow disk, and
 /// watches that the file is still where its name says. What was written before a sync began is safe
-/// from a power cut when the sync has ended.
+/// from a power cut when the sync has ended. The destructor waits for one that is under way.
 class DiskSync {
  public:
   /// @param descriptor  of the file; outlives this
   /// @param path        where the file is to be found; outlives its renaming, not its moving
   DiskSync(int descriptor, std::filesystem::path path, std::chrono::milliseconds period);
-  ~DiskSync();  // waits for a sync that is under way
   DiskSync(const DiskSync&) = delete;
   DiskSync& operator=(const DiskSync&) = delete;
 
@@ -63,18 +62,17 @@ class DiskSync {
   Place place() const noexcept { return place_.load(std::memory_order_relaxed); }
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
 
   int descriptor_;
   std::filesystem::path path_;
   std::chrono::milliseconds period_;
   std::atomic<Place> place_{Place::kThere};
-  mutable std::mutex mutex_;  // the three below
-  std::condition_variable wake_;
+  mutable std::mutex mutex_;  // the two below
+  std::condition_variable_any wake_;
   bool asked_{false};
-  bool stop_{false};
   std::string failure_;
-  std::thread thread_;
+  std::jthread thread_;  // last: it uses the others
 };
 
 /// Place of the file of a descriptor, seen from a path.

@@ -60,7 +60,7 @@ auto bone_key(const record::PassRow& pass) {
 
 LiveDrilling::LiveDrilling(drilling::ProcedureSetup setup, double rate)
     : setup_(std::move(setup)), rate_(rate), given_(std::make_unique<Batch>()) {
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 LiveDrilling::~LiveDrilling() { finish(); }
@@ -90,22 +90,19 @@ void LiveDrilling::add(std::span<const record::Sample> samples) {
 
 void LiveDrilling::finish() {
   if (thread_.joinable()) {
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    ended_changed_.notify_one();
+    thread_.request_stop();
     thread_.join();
   }
 }
 
-void LiveDrilling::run() {
+void LiveDrilling::run(const std::stop_token& stop) {
   constexpr std::chrono::milliseconds kBetween{100};
   for (bool ended = false; !ended;) {
     std::vector<std::unique_ptr<Batch>> batches;
     {
       std::unique_lock lock(mutex_);
-      ended = ended_changed_.wait_for(lock, kBetween, [this] { return ended_; });
+      ended_.wait_for(lock, stop, kBetween, [] { return false; });
+      ended = stop.stop_requested();
       batches.swap(waiting_);
     }
     try {

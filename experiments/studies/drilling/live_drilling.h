@@ -1,7 +1,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -73,7 +72,7 @@ class LiveDrilling {
  private:
   struct Batch;
   struct Bone;
-  void run();
+  void run(const std::stop_token& stop);
   void measure(Batch& batch);
   void show(const Bone& bone);
 
@@ -82,14 +81,13 @@ class LiveDrilling {
   std::unique_ptr<Batch> given_;  // the session's thread: since the last samples
 
   mutable std::mutex mutex_;
-  std::condition_variable ended_changed_;
+  std::condition_variable_any ended_;
   std::vector<std::unique_ptr<Batch>> waiting_;
-  bool ended_{false};
   std::vector<DrilledProcedure> procedures_;
   std::string trouble_;
 
   std::unique_ptr<Bone> bone_;  // the measuring thread
-  std::thread thread_;
+  std::jthread thread_;
 };
 
 }  // namespace haptrial::experiments
