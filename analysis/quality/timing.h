@@ -1,10 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 #include "analysis/statistics/base/defined.h"
 #include "core/record/read/session_reader_forward.h"

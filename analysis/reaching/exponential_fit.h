@@ -1,7 +1,6 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "analysis/reaching/learning_curve.h"
 #include "analysis/reaching/participant_intervals.h"

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
 #include "core/contact/hull.h"
 #include "core/contact/plane_set.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstdint>
 
 #include "core/base/definition/schema_forward.h"
 #include "core/base/random.h"

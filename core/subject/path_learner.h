@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 
 #include "core/base/definition/schema_forward.h"
 #include "core/base/random.h"

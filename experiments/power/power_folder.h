@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "analysis/power/power_result.h"

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <cstdint>
 #include <thread>
-#include <vector>
 
 #include "core/bone/simulator/bone_touch.h"
 #include "core/bone/simulator/companions.h"

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "analysis/bone_drilling/metrics/achieved.h"

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "analysis/statistics/base/defined.h"
 #include "analysis/statistics/relation/correlation.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>

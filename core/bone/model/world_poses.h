@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>

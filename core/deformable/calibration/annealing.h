@@ -2,9 +2,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "core/base/random.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <cstdint>
 #include <span>
 
 #include "core/deformable/touch/body_touch.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <span>
-#include <vector>
 
 #include "core/render/gl/antialias.h"
 #include "core/render/gl/gl.h"

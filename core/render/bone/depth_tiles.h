@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <vector>
 
 #include "core/render/bone/tool_shadow.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "core/bone/simulator/drilling_view.h"
 #include "core/device/virtual_device.h"
 #include "core/stimulus/observer.h"

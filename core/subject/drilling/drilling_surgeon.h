@@ -1,9 +1,7 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "core/bone/simulator/drilling_view.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
 

@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "analysis/psychophysics/fit/track_estimate.h"
 #include "analysis/psychophysics/fit/trials_plan.h"

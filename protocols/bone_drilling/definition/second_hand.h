@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <optional>
 
 #include "core/base/definition/schema_forward.h"
 #include "core/bone/simulator/second_hand.h"

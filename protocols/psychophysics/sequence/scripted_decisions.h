@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "core/record/rows/answer_rows.h"
 #include "core/record/rows/trial_rows.h"
