@@ -8,7 +8,6 @@
 #include <set>
 
 #include "analysis/exchange/columns.h"
-#include "analysis/exchange/bids_text.h"
 #include "analysis/exchange/pass_facts.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/answer_rows.h"

@@ -9,9 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "analysis/exchange/columns.h"
 #include "analysis/exchange/pass_facts.h"
-#include "analysis/exchange/sample_text.h"
 #include "analysis/files/delimited.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/session_tables.h"

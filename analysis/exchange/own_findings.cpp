@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
-#include <vector>
 
-#include "analysis/document/finding.h"
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/quality/channel_quality.h"
 #include "core/base/error.h"

@@ -6,13 +6,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <iterator>
-#include <string>
 #include <variant>
 
-#include "analysis/exchange/columns.h"
 #include "analysis/exchange/export_sessions.h"
 #include "analysis/exchange/other_devices.h"
-#include "analysis/files/gzip_file.h"
 #include "analysis/quality/channel_quality.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/channel/channel_kinds.h"
-
 namespace haptrial::channel {
 namespace {
 

@@ -11,8 +11,6 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-#include <string>
-#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/serial_port.h"

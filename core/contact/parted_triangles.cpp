@@ -1,7 +1,6 @@
 #include "core/contact/parted_triangles.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 

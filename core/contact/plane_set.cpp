@@ -1,7 +1,6 @@
 #include "core/contact/plane_set.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 
 namespace haptrial::contact {

@@ -6,7 +6,6 @@
 #include <stdexcept>
 
 #include "core/base/definition/table.h"
-#include "core/questions/question_kind.h"
 
 namespace haptrial::questions {
 namespace {

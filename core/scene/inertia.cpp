@@ -1,6 +1,5 @@
 #include "core/scene/inertia.h"
 
-#include <Eigen/Core>
 #include <cmath>
 #include <numbers>
 #include <vector>

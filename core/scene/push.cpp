@@ -1,6 +1,5 @@
 #include "core/scene/push.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>

@@ -1,11 +1,9 @@
 #include "core/sound/cue_player.h"
 
 #include <algorithm>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "core/sound/card_player.h"
 #include "core/sound/mixer.h"

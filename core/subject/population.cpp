@@ -1,6 +1,5 @@
 #include "core/subject/population.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "core/base/definition/table.h"

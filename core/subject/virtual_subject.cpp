@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/subject/noise.h"
-
 namespace haptrial::subject {
 
 using stimulus::Instruction;

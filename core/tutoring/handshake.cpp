@@ -2,9 +2,7 @@
 
 #include <sodium.h>
 
-#include <algorithm>
 #include <cstring>
-#include <string_view>
 
 #include "core/base/error.h"
 

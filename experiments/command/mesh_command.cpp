@@ -13,7 +13,6 @@
 #include "core/geometry/files/mesh_io.h"
 #include "core/render/gl/image.h"
 #include "experiments/command/arguments.h"
-#include "experiments/control/signals.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

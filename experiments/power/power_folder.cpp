@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
-#include "experiments/power/power_part.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "core/base/definition/given_values.h"
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/fnv.h"

@@ -9,7 +9,6 @@
 #include <sstream>
 #include <utility>
 
-#include "core/device/mouse.h"
 #include "core/scene/scene.h"
 #include "experiments/preview/preview_pictures.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"

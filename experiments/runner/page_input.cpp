@@ -1,7 +1,5 @@
 #include "experiments/runner/page_input.h"
 
-#include <utility>
-
 #include "core/questions/question_kind.h"
 
 namespace haptrial::experiments {

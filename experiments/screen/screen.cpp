@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <condition_variable>
 #include <future>
-#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -17,7 +15,6 @@
 #include "core/realtime/latest_value.h"
 #include "core/render/gl/image.h"
 #include "experiments/screen/frame_pacing.h"
-#include "experiments/screen/pad_pointer.h"
 #include "experiments/screen/participant_canvas.h"
 #include "experiments/screen/speaker.h"
 

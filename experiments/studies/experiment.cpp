@@ -9,7 +9,6 @@
 #include <string_view>
 #include <system_error>
 
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/render/flat/typesetter.h"

@@ -8,9 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/bone/record/drilling_tables.h"
 #include "core/bone/record/recorded_bone.h"
-#include "core/bone/record/tool_rows.h"
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"

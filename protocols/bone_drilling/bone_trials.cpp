@@ -21,9 +21,7 @@
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 #include "protocols/bone_drilling/drilling_rig.h"
-#include "protocols/bone_drilling/procedure_rows.h"
 #include "protocols/bone_drilling/tuning_page.h"
-#include "protocols/interface/session_file.h"
 
 namespace haptrial::protocols {
 namespace {

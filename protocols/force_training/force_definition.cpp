@@ -10,7 +10,6 @@
 #include "core/base/definition/schema.h"
 #include "core/base/nearest.h"
 #include "core/control/loop_margin.h"
-#include "protocols/definition/definition.h"
 #include "protocols/definition/lab_file.h"
 #include "protocols/definition/mirroring.h"
 #include "protocols/force_training/recorded_path.h"

@@ -1,6 +1,5 @@
 #include "protocols/interface/drawing.h"
 
-#include <memory>
 #include <utility>
 
 namespace haptrial::protocols {

@@ -1,7 +1,6 @@
 #include "protocols/interface/session_task.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace haptrial::protocols {
 namespace {

@@ -11,9 +11,6 @@
 
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
-#include "core/record/rows/object_rows.h"
-#include "core/record/rows/trial_rows.h"
-#include "protocols/interface/session_file.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
 #include "protocols/psychophysics/objects/object_files.h"
 #include "protocols/psychophysics/presentation/pass_rows.h"

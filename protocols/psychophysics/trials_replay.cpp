@@ -16,7 +16,6 @@
 #include "core/record/rows/trial_rows.h"
 #include "core/render/gl/offscreen.h"
 #include "protocols/interface/protocol.h"
-#include "protocols/interface/replay.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/psychophysics/defined_trials.h"
 

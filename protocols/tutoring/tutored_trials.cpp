@@ -8,7 +8,6 @@
 #include "core/base/error.h"
 #include "core/base/longer.h"
 #include "core/control/pd_controller.h"
-#include "core/record/rows/partner_rows.h"
 #include "protocols/interface/session_file.h"
 
 namespace haptrial::protocols {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bone/model/bone_model.h"
 #include "core/bone/surface/surface.h"
 
 namespace haptrial::analysis::drilling {

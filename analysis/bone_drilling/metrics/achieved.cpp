@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "analysis/bone_drilling/metrics/study_bones.h"
-#include "core/bone/model/distance_field.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

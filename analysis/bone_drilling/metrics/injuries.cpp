@@ -8,7 +8,6 @@
 
 #include "analysis/bone_drilling/metrics/in_order.h"
 #include "analysis/bone_drilling/metrics/study_bones.h"
-#include "analysis/bone_drilling/metrics/visibility.h"
 #include "core/bone/drill/sight.h"
 
 namespace haptrial::analysis::drilling {

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <utility>
 
-#include "analysis/contact/demo_study/demo_study_tables.h"
 #include "analysis/document/palette.h"
 
 namespace haptrial::evaluation {

@@ -7,7 +7,6 @@
 #include <span>
 
 #include "analysis/contact/demo_study/demo_study_figures.h"
-#include "analysis/contact/demo_study/demo_study_tables.h"
 #include "analysis/contact/evaluation/evaluation_tables.h"
 #include "analysis/document/document.h"
 #include "analysis/document/figure_gnuplot.h"

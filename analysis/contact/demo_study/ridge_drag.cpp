@@ -1,6 +1,5 @@
 #include "analysis/contact/demo_study/ridge_drag.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>

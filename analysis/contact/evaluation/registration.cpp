@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,7 +10,6 @@
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/descriptive.h"
 #include "core/base/random.h"
-#include "core/contact/signed_distance.h"
 
 namespace haptrial::evaluation {
 namespace {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
-#include <string>
 
 #include "analysis/document/palette.h"
 #include "analysis/force_training/report/study_figures.h"

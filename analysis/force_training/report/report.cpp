@@ -9,7 +9,6 @@
 
 #include "analysis/force_training/report/report_parts.h"
 #include "analysis/force_training/study/quality_summary.h"
-#include "analysis/force_training/study/study_result.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis {

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "analysis/statistics/base/p_adjust.h"
 

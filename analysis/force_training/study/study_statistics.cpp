@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <span>
-#include <vector>
 
-#include "analysis/force_training/score/trial_score.h"
 #include "analysis/statistics/relation/regression.h"
 #include "analysis/statistics/variance/effect_size.h"
 

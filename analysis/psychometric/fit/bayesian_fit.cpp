@@ -4,7 +4,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analysis/psychometric/fit/credible.h"
 #include "analysis/psychometric/fit/posterior.h"
 #include "analysis/statistics/base/solvers.h"
 

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "analysis/psychometric/fit/likelihood_climb.h"
-#include "analysis/psychometric/fit/prior.h"
 
 namespace haptrial::analysis {
 namespace {

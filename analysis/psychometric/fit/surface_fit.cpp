@@ -8,9 +8,6 @@
 #include <map>
 #include <stdexcept>
 #include <utility>
-#include <vector>
-
-#include "core/psychometric/procedure/quest_tables.h"
 
 namespace haptrial::analysis {
 namespace {

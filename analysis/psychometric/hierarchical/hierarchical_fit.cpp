@@ -6,9 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <utility>
-#include <vector>
-
-#include "analysis/psychometric/hierarchical/sampler.h"
 
 namespace haptrial::analysis::hierarchical {
 namespace {

@@ -1,6 +1,5 @@
 #include "analysis/psychometric/models/binomial_mixed.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,9 +7,7 @@
 #include <optional>
 #include <set>
 #include <stdexcept>
-#include <vector>
 
-#include "analysis/psychometric/models/binomial_model.h"
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/distributions.h"
 

@@ -1,7 +1,6 @@
 #include "analysis/psychometric/models/magnitude.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>

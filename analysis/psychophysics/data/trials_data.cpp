@@ -7,7 +7,6 @@
 #include <atomic>
 #include <mutex>
 #include <shared_mutex>
-#include <string>
 #include <unordered_map>
 
 namespace haptrial::analysis::trials {

@@ -7,13 +7,11 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <set>
 
 #include "analysis/files/csv.h"
 #include "analysis/files/sha256.h"
-#include "analysis/psychophysics/exchange/trial_columns.h"
 #include "core/base/alike_names.h"
 #include "core/base/counted.h"
 #include "core/base/error.h"

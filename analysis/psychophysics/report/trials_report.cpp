@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "analysis/psychometric/fit/stated_fit.h"
 #include "analysis/psychophysics/report/report_times.h"

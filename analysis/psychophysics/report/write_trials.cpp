@@ -13,7 +13,6 @@
 #include "analysis/psychophysics/report/trials_findings.h"
 #include "analysis/psychophysics/report/trials_json.h"
 #include "analysis/psychophysics/report/trials_report.h"
-#include "analysis/psychophysics/study/trials_result.h"
 #include "core/base/file_text.h"
 
 namespace haptrial::analysis::trials {

@@ -8,9 +8,7 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <utility>
 
-#include "analysis/psychometric/models/detection.h"
 #include "analysis/psychometric/models/information_transfer.h"
 #include "analysis/psychophysics/fit/series.h"
 

@@ -1,9 +1,7 @@
 #include "analysis/statistics/base/descriptive.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "analysis/statistics/base/distributions.h"
 

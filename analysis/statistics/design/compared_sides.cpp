@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/design/covariate_tests.h"

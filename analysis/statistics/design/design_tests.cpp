@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string>
 #include <type_traits>
-#include <vector>
 
 #include "analysis/statistics/base/p_adjust.h"
 #include "analysis/statistics/design/covariate_tests.h"

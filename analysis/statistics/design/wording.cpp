@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-
-#include "analysis/document/number.h"
 
 namespace haptrial::analysis {
 namespace {

@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "analysis/statistics/base/decomposition.h"
 #include "analysis/statistics/base/descriptive.h"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "analysis/statistics/base/descriptive.h"
 #include "analysis/statistics/base/distributions.h"

@@ -12,8 +12,6 @@
 #include "core/base/file_text.h"
 #include "core/base/parallel.h"
 #include "core/bone/data/anatomy.h"
-#include "core/bone/data/volume_source.h"
-#include "core/bone/model/bone_model.h"
 #include "core/geometry/files/mesh_io.h"
 #include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/voxelize.h"

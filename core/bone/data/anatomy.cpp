@@ -7,7 +7,6 @@
 #include <cctype>
 #include <cmath>
 #include <sstream>
-#include <string>
 #include <tuple>
 
 #include "core/base/error.h"

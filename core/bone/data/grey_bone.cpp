@@ -1,7 +1,6 @@
 #include "core/bone/data/grey_bone.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace haptrial::bone {

@@ -13,12 +13,10 @@
 #include "core/base/nearest.h"
 #include "core/bone/data/anatomy.h"
 #include "core/bone/data/ear_side.h"
-#include "core/bone/data/grey_bone.h"
 #include "core/bone/data/label_names.h"
 #include "core/bone/data/resample.h"
 #include "core/bone/data/segments.h"
 #include "core/bone/data/volume_source.h"
-#include "core/bone/model/bone_model.h"
 
 namespace haptrial::bone {
 namespace fs = std::filesystem;

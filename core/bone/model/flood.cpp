@@ -1,7 +1,6 @@
 #include "core/bone/model/flood.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 namespace haptrial::bone {

@@ -1,6 +1,5 @@
 #include "core/bone/simulator/plate_shapes.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

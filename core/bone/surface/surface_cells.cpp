@@ -1,7 +1,6 @@
 #include "core/bone/surface/surface_cells.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <utility>

@@ -2,9 +2,7 @@
 
 #include <nlopt.h>
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <exception>
 #include <memory>
 

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <iterator>
 #include <stdexcept>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/whole_file.h"

@@ -1,7 +1,5 @@
 #include "core/geometry/mesh/mesh_size.h"
 
-#include <Eigen/Geometry>
-
 #include <cstdint>
 
 namespace haptrial::geometry {

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "core/base/definition/schema.h"
 #include "core/psychometric/definition/track.h"

@@ -7,12 +7,9 @@
 #include <charconv>
 #include <iterator>
 #include <set>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/base/error.h"
-#include "core/record/read/session_reader.h"
 
 namespace haptrial::record {
 

@@ -1,11 +1,9 @@
 #include "core/record/read/session_reader.h"
 
-#include <algorithm>
 #include <map>
 #include <mutex>
 #include <set>
 #include <stdexcept>
-#include <string>
 #include <system_error>
 #include <utility>
 
@@ -14,7 +12,6 @@
 #include "core/record/hdf5/hdf5_layer.h"
 #include "core/record/hdf5/session_info.h"
 #include "core/record/read/found_table.h"
-#include "core/record/read/table_columns.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/rows/trial_facts.h"
 #include "core/record/table/byte_planes.h"

@@ -4,10 +4,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <set>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "core/record/hdf5/deflate.h"
 #include "core/record/rows/session_tables.h"

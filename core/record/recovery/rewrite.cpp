@@ -3,7 +3,6 @@
 #include <fstream>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include "core/base/error.h"
 #include "core/record/hdf5/session_info.h"

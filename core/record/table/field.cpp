@@ -1,7 +1,6 @@
 #include "core/record/table/field.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace haptrial::record {
 

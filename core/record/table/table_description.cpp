@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "core/record/table/field_codec.h"
-#include "core/record/table/schema.h"
 
 namespace haptrial::record {
 namespace {

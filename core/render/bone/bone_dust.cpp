@@ -9,7 +9,6 @@
 
 #include "core/render/bone/bone_layer.h"
 #include "core/render/bone/bone_shaders.h"
-#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

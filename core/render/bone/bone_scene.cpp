@@ -13,10 +13,8 @@
 #include "core/render/bone/bone_layer.h"
 #include "core/render/bone/bone_mesh.h"
 #include "core/render/bone/bone_object.h"
-#include "core/render/bone/bone_palette.h"
 #include "core/render/bone/bone_shaders.h"
 #include "core/render/bone/depth_tiles.h"
-#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <string>
 
-#include "core/render/gl/gl.h"
-
 namespace haptrial::render {
 namespace {
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/render/gl/gl.h"
-
 namespace haptrial::render {
 namespace {
 

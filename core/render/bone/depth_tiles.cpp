@@ -3,7 +3,6 @@
 #include <GL/glcorearb.h>
 
 #include "core/base/error.h"
-#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

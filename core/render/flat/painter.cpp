@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

@@ -3,7 +3,6 @@
 #include <GL/glcorearb.h>
 
 #include "core/render/flat/flat_quads.h"
-#include "core/render/gl/gl.h"
 
 namespace haptrial::render {
 namespace {

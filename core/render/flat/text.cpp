@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/render/gl/gl.h"
-
 namespace haptrial::render {
 namespace {
 

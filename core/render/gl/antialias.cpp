@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include "core/render/gl/gl.h"
-
 namespace haptrial::render {
 namespace {
 

@@ -1,6 +1,5 @@
 #include "core/render/mesh/mesh_scene.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 

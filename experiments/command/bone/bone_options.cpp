@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "core/base/error.h"
 #include "core/base/nearest.h"

@@ -6,14 +6,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
-#include <vector>
 
 #include "analysis/contact/recording/session_contact.h"
 #include "core/base/error.h"
 #include "core/base/longest_of.h"
 #include "core/base/nearest.h"
 #include "core/record/read/session_reader.h"
-#include "experiments/command/deform/deform_body.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/device/certificate_record.h"
-
 namespace haptrial::experiments {
 namespace {
 

@@ -15,7 +15,6 @@
 #include "core/base/error.h"
 #include "core/device/sensed_mount.h"
 #include "experiments/command/sessions/certificate_task.h"
-#include "experiments/command/sessions/device_bench.h"
 #include "experiments/command/sessions/sensor_channel.h"
 #include "experiments/control/signals.h"
 

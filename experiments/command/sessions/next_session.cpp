@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <string>
 
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"

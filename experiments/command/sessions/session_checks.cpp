@@ -11,7 +11,6 @@
 #include <map>
 #include <system_error>
 #include <thread>
-#include <vector>
 
 #include "core/base/counted.h"
 #include "core/base/error.h"
@@ -23,7 +22,6 @@
 #include "experiments/command/sessions/run_checks.h"
 #include "experiments/command/start/doctor_checks.h"
 #include "experiments/runner/devices.h"
-#include "experiments/studies/experiment.h"
 #include "experiments/study/session_times.h"
 #include "protocols/definition/button_uses.h"
 #include "protocols/definition/groups.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cctype>
 #include <exception>
-#include <map>
 #include <set>
 
 #include "core/base/definition/table.h"

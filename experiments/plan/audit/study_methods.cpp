@@ -1,13 +1,11 @@
 #include "experiments/plan/audit/study_methods.h"
 
 #include <algorithm>
-#include <set>
 
 #include "analysis/exchange/own_findings.h"
 #include "analysis/files/csv.h"
 #include "core/base/error.h"
 #include "core/record/read/definition_versions.h"
-#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/plan/plan_log.h"
 #include "experiments/studies/experiment.h"

@@ -16,7 +16,6 @@
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/drilling/learn_phases.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
 namespace {

@@ -7,7 +7,6 @@
 #include <set>
 
 #include "analysis/bone_drilling/phases/phase_file.h"
-#include "analysis/bone_drilling/phases/phase_labels.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/record/read/marked_trials.h"

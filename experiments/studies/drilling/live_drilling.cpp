@@ -8,9 +8,7 @@
 #include <exception>
 #include <tuple>
 #include <utility>
-#include <vector>
 
-#include "analysis/bone_drilling/metrics/live.h"
 #include "core/base/counted.h"
 #include "core/base/exception_words.h"
 

@@ -5,7 +5,6 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/subject/drilling/cavity_plan.h"
-#include "protocols/bone_drilling/definition/bone_definition.h"
 
 namespace haptrial::experiments {
 

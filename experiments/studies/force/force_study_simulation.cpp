@@ -9,10 +9,8 @@
 
 #include "analysis/force_training/study/learned_scores.h"
 #include "analysis/force_training/study/study_statistics.h"
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
-#include "experiments/studies/curve_analysis.h"
 #include "experiments/study/study_run.h"
 #include "protocols/definition/groups.h"
 #include "protocols/interface/trials.h"

@@ -11,7 +11,6 @@
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/study/covariate.h"
 #include "analysis/psychophysics/study/trials_study.h"
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
 #include "experiments/studies/power_plan.h"

@@ -9,7 +9,6 @@
 #include "core/render/flat/picture_quad.h"
 #include "core/render/gl/offscreen.h"
 #include "protocols/bone_drilling/display/bone_display.h"
-#include "protocols/bone_drilling/display/placement_legend.h"
 #include "protocols/bone_drilling/display/stage_stills.h"
 
 namespace haptrial::protocols {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "core/base/definition/table.h"
 #include "core/record/rows/trial_rows.h"

@@ -9,7 +9,6 @@
 #include "core/base/error.h"
 #include "core/control/loop_margin.h"
 #include "core/scene/needed_damping.h"
-#include "protocols/definition/definition.h"
 #include "protocols/psychophysics/definition/presented.h"
 
 namespace haptrial::protocols {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <string>
 
 #include "core/deformable/touch/prepared.h"
 #include "core/deformable/touch/tissue.h"

@@ -12,7 +12,6 @@
 #include "core/render/flat/text.h"
 #include "core/render/flat/text_screen.h"
 #include "protocols/psychophysics/objects/deformable_sight.h"
-#include "protocols/psychophysics/objects/seen_bodies.h"
 #include "protocols/psychophysics/presentation/trial_page.h"
 #include "protocols/psychophysics/presentation/trial_view.h"
 

@@ -9,7 +9,6 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/trial_rows.h"
-#include "protocols/psychophysics/sequence/script_process.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 
 namespace haptrial::protocols {
