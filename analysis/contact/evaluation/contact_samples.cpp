@@ -1,18 +1,13 @@
 #include "analysis/contact/evaluation/contact_samples.h"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "core/base/require.h"
 
 namespace haptrial::evaluation {
 namespace {
 
 constexpr double kUnit = 1e-6;  // a normal's length may be off by this
-
-void require_samples(bool good, const char* sentence) {
-  if (!good) {
-    throw std::invalid_argument(sentence);
-  }
-}
 
 struct Line {
   Eigen::Vector3d slope;
@@ -44,24 +39,24 @@ Line fitted_line(std::span<const double> time, std::span<const Eigen::Vector3d> 
 
 void check(const ContactSamples& s) {
   const std::size_t n = s.size();
-  require_samples(s.position.size() == n && s.velocity.size() == n && s.normal.size() == n &&
-                      s.force.size() == n && s.depth.size() == n,
-                  "samples of a contact must have equally many values of each kind");
+  require(s.position.size() == n && s.velocity.size() == n && s.normal.size() == n &&
+              s.force.size() == n && s.depth.size() == n,
+          "samples of a contact must have equally many values of each kind");
   for (std::size_t i = 0; i < n; ++i) {
-    require_samples(std::isfinite(s.time[i]) && (i == 0 || s.time[i] > s.time[i - 1]),
-                    "times of a contact must be finite and increase");
-    require_samples(s.position[i].allFinite() && s.velocity[i].allFinite() &&
-                        s.force[i].allFinite() && std::isfinite(s.depth[i]),
-                    "samples of a contact must be finite");
-    require_samples(std::abs(s.normal[i].norm() - 1.0) < kUnit,
-                    "normals of a contact must have unit length");
+    require(std::isfinite(s.time[i]) && (i == 0 || s.time[i] > s.time[i - 1]),
+            "times of a contact must be finite and increase");
+    require(s.position[i].allFinite() && s.velocity[i].allFinite() && s.force[i].allFinite() &&
+                std::isfinite(s.depth[i]),
+            "samples of a contact must be finite");
+    require(std::abs(s.normal[i].norm() - 1.0) < kUnit,
+            "normals of a contact must have unit length");
   }
 }
 
 PathVelocity path_velocity(std::span<const double> time, std::span<const Eigen::Vector3d> position,
                            double width) {
-  require_samples(time.size() >= 3 && time.size() == position.size() && width > 0.0,
-                  "a path's velocity needs three samples or more and a width above 0");
+  require(time.size() >= 3 && time.size() == position.size() && width > 0.0,
+          "a path's velocity needs three samples or more and a width above 0");
   PathVelocity result;
   double squares = 0.0, freedom = 0.0, precision = 0.0;
   std::size_t first = 0, end = 0;

@@ -11,6 +11,7 @@
 #include "analysis/contact/evaluation/in_trajectory.h"
 #include "analysis/contact/evaluation/surface_lag.h"
 #include "analysis/statistics/base/descriptive.h"
+#include "core/base/require.h"
 
 namespace haptrial::evaluation {
 namespace {
@@ -28,19 +29,13 @@ constexpr double kMuchFriction = 0.6;  // rare between dry solids
 constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
 constexpr double kOffBody = 0.05;      // of a size: a median distance that is doubted
 
-void require_prepared(bool good, const char* sentence) {
-  if (!good) {
-    throw std::invalid_argument(sentence);
-  }
-}
-
 void check_options(const PrepareOptions& o) {
-  require_prepared(o.rate >= 10.0 && o.rate <= 1e5, "rate: allowed: 10 to 100000 Hz");
-  require_prepared(o.radius >= 0.0 && std::isfinite(o.radius), "radius: allowed: 0 or more");
-  require_prepared(o.least_force > 0.0, "least_force: allowed: above 0");
-  require_prepared(o.stiffness > 0.0 && std::isfinite(o.stiffness), "stiffness: allowed: above 0");
-  require_prepared(o.tip.allFinite(), "tip: allowed: finite");
-  require_prepared(!o.lag || std::isfinite(*o.lag), "lag: allowed: finite");
+  require(o.rate >= 10.0 && o.rate <= 1e5, "rate: allowed: 10 to 100000 Hz");
+  require(o.radius >= 0.0 && std::isfinite(o.radius), "radius: allowed: 0 or more");
+  require(o.least_force > 0.0, "least_force: allowed: above 0");
+  require(o.stiffness > 0.0 && std::isfinite(o.stiffness), "stiffness: allowed: above 0");
+  require(o.tip.allFinite(), "tip: allowed: finite");
+  require(!o.lag || std::isfinite(*o.lag), "lag: allowed: finite");
 }
 
 double mean_period(const PoseStream& pose) {
@@ -301,8 +296,8 @@ PoseStream overlapping(const PoseStream& path, const ForceStream& force) {
       result.orientation.push_back(path.orientation[i]);
     }
   }
-  require_prepared(result.size() >= kFewestContacts,
-                   "12 poses or more must lie within the time of the forces");
+  require(result.size() >= kFewestContacts,
+          "12 poses or more must lie within the time of the forces");
   return result;
 }
 
@@ -381,11 +376,10 @@ void judge_depth(const Touch& touch, const contact::FeltBody& body, const Prepar
 
 /// @throws std::invalid_argument if nothing touches
 void judge_touch(const Touch& touch, PreparedContact& result) {
-  require_prepared(
-      result.contact_share > 0.0,
-      "no force points out of the body where the probe is; is the mesh another body or "
-      "in another unit (--units), do the forces act on the body (--on-body), or is the "
-      "lag another one (--lag)?");
+  require(result.contact_share > 0.0,
+          "no force points out of the body where the probe is; is the mesh another body or "
+          "in another unit (--units), do the forces act on the body (--on-body), or is the "
+          "lag another one (--lag)?");
   remark_on_lean(touch, result);
   if (touch.inwards > kInwards) {
     result.remarks.push_back(fmt::format(
