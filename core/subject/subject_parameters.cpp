@@ -60,15 +60,4 @@ const Schema<Population<SubjectParameters>>& subject_schema() {
   return schema;
 }
 
-SubjectParameters noiseless_subject() {
-  SubjectParameters person;
-  for (const auto spread :
-       {&S::visual_weber, &S::haptic_weber, &S::visual_memory_noise, &S::haptic_memory_noise,
-        &S::haptic_bias, &S::bar_misjudgement, &S::calibration_loss, &S::forgetting,
-        &S::production_bias, &S::timing_error, &S::force_noise, &S::tremor}) {
-    person.*spread = 0.0;
-  }
-  return person;
-}
-
 }  // namespace haptrial::subject

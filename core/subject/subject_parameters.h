@@ -34,7 +34,4 @@ struct SubjectParameters {
 /// The keys of [subject], which say how each parameter varies over virtual people.
 const Schema<Population<SubjectParameters>>& subject_schema();
 
-/// Everything at zero but delays and time constants: perceives, remembers and acts without error.
-SubjectParameters noiseless_subject();
-
 }  // namespace haptrial::subject

@@ -110,7 +110,10 @@ int main(int count, char** arguments) {
       rounds = std::atoi(value), ++i;
     }
     if (key == "--law") {
-      elasticity.law = law_named(value), ++i;
+      for (const Law law : {Law::kLinear, Law::kCorotational, Law::kNeoHookean}) {
+        elasticity.law = name_of(law) == value ? law : elasticity.law;
+      }
+      ++i;
     }
     if (key == "--poisson") {
       elasticity.materials[0].poisson = std::atof(value), ++i;

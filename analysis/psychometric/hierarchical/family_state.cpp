@@ -84,38 +84,11 @@ void draw_spread(const Family& family, FamilyState& state, double FamilyState::*
   }
 }
 
-double draw_half_t(double scale, RandomStream& random) {
-  double squares = 0.0;
-  for (int i = 0; i < static_cast<int>(kDegrees); ++i) {
-    const double z = random.normal();
-    squares += z * z;
-  }
-  return scale *
-         std::max(std::abs(random.normal()) / std::sqrt(squares / kDegrees), 2.0 * kSmallestShare);
-}
-
 }  // namespace
 
 double log_spread_prior(const FamilyPrior& prior, double spread) noexcept {
   const double t = spread / prior.spread;
   return std::log(spread) - 0.5 * (kDegrees + 1.0) * std::log1p(t * t / kDegrees);
-}
-
-FamilyState draw_prior(const Family& family, RandomStream& random) {
-  FamilyState state;
-  state.between = draw_half_t(family.prior.spread, random);
-  state.within = draw_half_t(family.prior.spread, random);
-  for (std::size_t column = 0; column < family.columns; ++column) {
-    state.means.push_back(family.prior.mean + family.prior.deviation * random.normal());
-  }
-  for (std::size_t person = 0; person + 1 < family.first.size(); ++person) {
-    const double shared = state.between * random.normal();
-    for (std::size_t e = family.first[person]; e < family.first[person + 1]; ++e) {
-      state.values.push_back(state.means[family.column[e]] + shared +
-                             (family.within ? state.within * random.normal() : 0.0));
-    }
-  }
-  return state;
 }
 
 EntryPrecision entry_precision(const Family& family, const FamilyState& state,

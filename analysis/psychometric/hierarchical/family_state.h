@@ -21,9 +21,6 @@ using State = std::array<FamilyState, kFamilies>;
 /// Log-density of a spread's prior at its value, by its logarithm, up to a constant.
 double log_spread_prior(const FamilyPrior& prior, double spread) noexcept;
 
-/// Draws a family from its prior.
-FamilyState draw_prior(const Family& family, RandomStream& random);
-
 /// Inverse of the covariance of k entries of one person: diagonal - shared 1 1'.
 struct EntryPrecision {
   double diagonal{1.0}, shared{0.0};

@@ -8,12 +8,6 @@
 #include "core/base/error.h"
 
 namespace haptrial::deformable {
-namespace {
-
-constexpr std::array<std::string_view, 3> kLawNames{"linear", "corotational", "neo-hookean"};
-
-}  // namespace
-
 Moduli moduli(const Material& material) {
   return {material.young / (2 * (1 + material.poisson)),
           material.young / (3 * (1 - 2 * material.poisson))};
@@ -34,16 +28,9 @@ void check_material(const Material& material, const std::string& name) {
   }
 }
 
-std::string_view name_of(Law law) { return kLawNames[static_cast<std::size_t>(law)]; }
-
-Law law_named(std::string_view name) {
-  for (std::size_t i = 0; i < kLawNames.size(); ++i) {
-    if (kLawNames[i] == name) {
-      return static_cast<Law>(i);
-    }
-  }
-  throw InputError(fmt::format("the law is '{}'; allowed: {}", name,
-                               fmt::join(kLawNames.begin(), kLawNames.end(), ", ")));
+std::string_view name_of(Law law) {
+  constexpr std::array<std::string_view, 3> kNames{"linear", "corotational", "neo-hookean"};
+  return kNames[static_cast<std::size_t>(law)];
 }
 
 }  // namespace haptrial::deformable

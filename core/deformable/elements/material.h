@@ -35,7 +35,5 @@ enum class Law {
 };
 
 std::string_view name_of(Law law);
-/// @throws InputError with the names that are allowed.
-Law law_named(std::string_view name);
 
 }  // namespace haptrial::deformable

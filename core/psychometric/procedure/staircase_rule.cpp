@@ -86,12 +86,6 @@ void check(const StaircaseParameters& p) {
   require(p.skip == 0 || p.last == 0, "skip and last must not both be above 0");
 }
 
-StaircaseStep weighted_step(double target, double down) {
-  require(target > 0.0 && target < 1.0, "target must be between 0 and 1");
-  require(down > 0.0 && std::isfinite(down), "down must be finite and above 0");
-  return {down, down * target / (1.0 - target), 0};
-}
-
 double balance_of(int down, const StaircaseStep& step) {
   require(down >= 1, "down must be at least 1");
   require(step.down > 0.0 && step.up > 0.0, "steps must be above 0");

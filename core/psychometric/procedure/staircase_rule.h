@@ -45,11 +45,6 @@ struct StaircaseParameters {
 /// @throws std::invalid_argument naming the parameter that breaks its bound.
 void check(const StaircaseParameters& parameters);
 
-/// Steps of a weighted up-down method (Kaernbach 1991): up / down = target / (1 - target) with
-/// down = up = 1 answers, so that the track is in balance at psi = target.
-/// @throws std::invalid_argument unless 0 < target < 1 and down > 0
-StaircaseStep weighted_step(double target, double down);
-
 /// Probability of a right answer at which a rule with up = 1 and constant steps is in balance, if
 /// the steps are small: p^n step_down = (1 - p^n) step_up, so
 ///

@@ -224,19 +224,4 @@ std::vector<KeySection> sections_with(const std::string& word) {
   return sections;
 }
 
-std::vector<std::string> keys_without_words(const std::vector<KeySection>& sections) {
-  std::vector<std::string> mistakes;
-  for (const KeySection& section : sections) {
-    for (const KnownKey& key : section.keys) {
-      if (key.words.empty()) {
-        mistakes.push_back(fmt::format("{}:{} has no description", section.protocol, key.path()));
-      } else if (key.optional && key.otherwise.empty()) {
-        mistakes.push_back(fmt::format("{}:{} may be left out, and nothing says what then",
-                                       section.protocol, key.path()));
-      }
-    }
-  }
-  return mistakes;
-}
-
 }  // namespace haptrial::experiments

@@ -39,8 +39,4 @@ std::string key_page(const std::vector<KeySection>& sections);
 /// of keys together are left to `haptrial validate`.
 std::string key_json_schema(const std::vector<KnownKey>& keys, std::string_view protocol);
 
-/// A sentence for each key without a description, or that may be left out without a word on what
-/// then holds: its reader has to say so.
-std::vector<std::string> keys_without_words(const std::vector<KeySection>& sections);
-
 }  // namespace haptrial::experiments

@@ -4,6 +4,7 @@
 
 #include "core/subject/force_memory.h"
 #include "core/subject/perception.h"
+#include "tests/core/subject/noiseless_subject.h"
 
 namespace haptrial::subject {
 namespace {

@@ -10,6 +10,7 @@
 #include "core/subject/hand.h"
 #include "core/subject/population.h"
 #include "core/subject/virtual_subject.h"
+#include "tests/core/subject/noiseless_subject.h"
 #include "tests/support/allocation_guard.h"
 
 namespace haptrial::subject::pacer_test {

@@ -1,4 +1,5 @@
 #include "core/subject/virtual_subject.h"
+#include "tests/core/subject/noiseless_subject.h"
 
 #include <gtest/gtest.h>
 

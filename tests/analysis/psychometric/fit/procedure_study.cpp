@@ -345,7 +345,7 @@ void add(StudyResult& result, const Counted& counted) {
 
 std::vector<ProcedureStudy> procedure_studies() {
   const StaircaseStep equal{0.5, 0.5, 0};
-  const StaircaseStep weighted = weighted_step(0.75, 0.25);
+  const StaircaseStep weighted{0.25, 0.75, 0};  // in balance at 0.75 (Kaernbach 1991)
   const auto track = [](int down, StaircaseStep step) {
     return [=](const Truth& t, std::uint64_t seed) {
       return one_track(t, seed, staircase(down, step));

@@ -18,6 +18,37 @@ using namespace analysis::hierarchical;
 constexpr std::size_t kThinning = 20;  // draws so far apart are nearly independent
 constexpr double kEffect = 0.1;        // of the second condition on the threshold
 
+/// Not below a smallest share, as family_state.cpp has it.
+double draw_half_t(double scale, RandomStream& random) {
+  constexpr int kDegrees = 3;
+  constexpr double kSmallestShare = 1e-5;
+  double squares = 0.0;
+  for (int i = 0; i < kDegrees; ++i) {
+    const double z = random.normal();
+    squares += z * z;
+  }
+  return scale *
+         std::max(std::abs(random.normal()) / std::sqrt(squares / kDegrees), 2.0 * kSmallestShare);
+}
+
+/// Draws a family from its prior.
+FamilyState draw_prior(const Family& family, RandomStream& random) {
+  FamilyState state;
+  state.between = draw_half_t(family.prior.spread, random);
+  state.within = draw_half_t(family.prior.spread, random);
+  for (std::size_t column = 0; column < family.columns; ++column) {
+    state.means.push_back(family.prior.mean + family.prior.deviation * random.normal());
+  }
+  for (std::size_t person = 0; person + 1 < family.first.size(); ++person) {
+    const double shared = state.between * random.normal();
+    for (std::size_t e = family.first[person]; e < family.first[person + 1]; ++e) {
+      state.values.push_back(state.means[family.column[e]] + shared +
+                             (family.within ? state.within * random.normal() : 0.0));
+    }
+  }
+  return state;
+}
+
 std::vector<PersonAnswers> design_of(const HierarchicalStudy& study) {
   std::vector<PersonAnswers> all;
   for (std::size_t person = 0; person < study.people; ++person) {

