@@ -19,7 +19,6 @@ constexpr double kLongestWatchdog = 255 * kWatchdogStep;
 constexpr unsigned char kOn = 1;
 constexpr unsigned char kOff = 0;
 constexpr int kVelocityWindowMode = 0;
-constexpr int kMotorSaturated = 2;
 constexpr int kStatusConnected = 1;  // places in the status words
 constexpr int kStatusForce = 5;
 constexpr int kStatusForceOffCause = 14;
@@ -368,11 +367,7 @@ void ForceDimensionDevice::judge_status(DeviceReading& reading) noexcept {
 
 bool ForceDimensionDevice::write(const Wrench& wrench) noexcept {
   const CallTimer::Scope timed(timer_);
-  const int result = set_wrench(wrench);
-  if (result == kMotorSaturated) {
-    saturated_.fetch_add(1, std::memory_order_relaxed);
-  }
-  return result >= 0 || fail();
+  return set_wrench(wrench) >= 0 || fail();
 }
 
 /// The vendor's axes turn into ours without a reflection, so that a torque is mapped as a force is.

@@ -97,11 +97,6 @@ class ForceDimensionDevice final : public Device {
   const char* trouble() const noexcept override { return trouble_; }
   std::uint64_t slow_calls() const noexcept override { return timer_.slow(); }
 
-  /// Forces that the motors could not give in full, since the start. Any thread.
-  std::uint64_t saturated_writes() const noexcept {
-    return saturated_.load(std::memory_order_relaxed);
-  }
-
  private:
   struct Api;
   void open();
@@ -125,7 +120,6 @@ class ForceDimensionDevice final : public Device {
   bool opened_by_drd_{false};
   DeviceInfo info_;
   CallTimer timer_;
-  std::atomic<std::uint64_t> saturated_{0};
   const char* trouble_{""};
 };
 

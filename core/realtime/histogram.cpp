@@ -49,16 +49,6 @@ void DurationHistogram::add(std::int64_t duration) noexcept {
   sum_ += static_cast<double>(duration);
 }
 
-void DurationHistogram::merge(const DurationHistogram& other) noexcept {
-  for (std::size_t i = 0; i < kBins; ++i) {
-    counts_[i] += other.counts_[i];
-  }
-  count_ += other.count_;
-  min_ = std::min(min_, other.min_);
-  max_ = std::max(max_, other.max_);
-  sum_ += other.sum_;
-}
-
 double DurationHistogram::min() const noexcept {
   return count_ == 0 ? std::nan("") : static_cast<double>(min_);
 }

@@ -23,7 +23,6 @@ class DurationHistogram {
   /// Servo thread: no allocation, lock or throw; constant time.
   void add(std::int64_t duration) noexcept;
   /// Adds the counts of another histogram to this one.
-  void merge(const DurationHistogram& other) noexcept;
 
   std::uint64_t count() const noexcept { return count_; }
 

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -180,15 +179,6 @@ constexpr Look kBand{palette::kBlue, palette::kShort, 7, 1.2, 1.0};
 constexpr Look kOne{palette::kBlack, palette::kSolid, 7, 1.0, 0.7};
 constexpr Look kZero{palette::kOrange, palette::kSolid, 6, 1.2, 0.9};
 
-std::string plain(const std::string& name) {
-  std::string word;
-  for (const char c : name) {
-    const auto u = static_cast<unsigned char>(c);
-    word += u < 0x80 && (std::isalnum(u) != 0 || c == '-' || c == '_') ? c : '_';
-  }
-  return word;
-}
-
 Series pieces(const char* label, const Look& look, const std::vector<Segment>& segments) {
   Series series{label, Mark::kSegments, look};
   for (const auto& [from, to] : segments) {
@@ -228,8 +218,8 @@ void add_answers(Figure& figure, const SurfaceCondition& one) {
 
 Figure figure_of(const TrialsResult& result, const SurfaceCondition& one) {
   Figure figure;
-  figure.name = "surface-" + plain(one.participant) + "-" + plain(one.track) +
-                (one.condition.empty() ? "" : "-" + plain(one.condition));
+  figure.name = "surface-" + file_word(one.participant) + "-" + file_word(one.track) +
+                (one.condition.empty() ? "" : "-" + file_word(one.condition));
   figure.title = fmt::format("Threshold of {}{}{}", one.participant,
                              one.condition.empty() ? "" : ", ", one.condition);
   const std::string& unit = result.plan.function.axis.unit;

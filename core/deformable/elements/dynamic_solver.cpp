@@ -63,7 +63,7 @@ struct DynamicSolver::Impl {
   std::vector<std::uint8_t> held;
   Motion motion;
   double time{};
-  double share;  // s
+  static constexpr double kShare = 0.5;  // s, of the midpoint
   BlockMatrix matrix;
   BlockMatrix damping;  // beta K, where beta > 0
   std::unique_ptr<LinearSystem> system;
@@ -79,7 +79,6 @@ struct DynamicSolver::Impl {
   Impl(const ElasticBody& b, const DynamicOptions& o)
       : body(b),
         options(o),
-        share(o.rule == TimeRule::kMidpoint ? 0.5 : 1),
         matrix(b.patches().groups(), b.mesh().vertices.size()),
         damping(matrix) {}
 
@@ -113,7 +112,7 @@ void DynamicSolver::Impl::set_damping() {
 /// Forces and potential at d.
 void DynamicSolver::Impl::evaluate(const Vectors& force) {
   const double h = options.step;
-  potential = body.forces(moved(share), elastic) / share;
+  potential = body.forces(moved(kShare), elastic) / kShare;
   if (!std::isfinite(potential)) {
     return;
   }
@@ -130,8 +129,8 @@ void DynamicSolver::Impl::evaluate(const Vectors& force) {
     }
     const Vector3d off = d[i] - h * motion.velocity[i];
     const Vector3d drag = (options.mass_damping * mass[i] * d[i] + damped[i]) / h;
-    unbalanced[i] = force[i] + elastic[i] - drag - mass[i] / (share * h * h) * off;
-    potential += mass[i] * off.squaredNorm() / (2 * share * h * h) + 0.5 * d[i].dot(drag) -
+    unbalanced[i] = force[i] + elastic[i] - drag - mass[i] / (kShare * h * h) * off;
+    potential += mass[i] * off.squaredNorm() / (2 * kShare * h * h) + 0.5 * d[i].dot(drag) -
                  force[i].dot(d[i]);
     squares += unbalanced[i].squaredNorm();
   }
@@ -143,12 +142,12 @@ void DynamicSolver::Impl::set_matrix() {
     return;
   }
   const double h = options.step;
-  body.stiffness(moved(share), elastic, matrix);
+  body.stiffness(moved(kShare), elastic, matrix);
   std::vector<double> diagonal(held.size());
   for (std::size_t i = 0; i < held.size(); ++i) {
-    diagonal[i] = body.masses()[i] * (1 / (share * h * h) + options.mass_damping / h);
+    diagonal[i] = body.masses()[i] * (1 / (kShare * h * h) + options.mass_damping / h);
   }
-  matrix.scale_and_add(share, diagonal);
+  matrix.scale_and_add(kShare, diagonal);
   if (damps()) {
     matrix.add(1 / h, damping);
   }
@@ -196,9 +195,7 @@ void DynamicSolver::Impl::finish() {
   const double h = options.step;
   for (std::size_t i = 0; i < d.size(); ++i) {
     motion.displacement[i] += d[i];
-    motion.velocity[i] = options.rule == TimeRule::kMidpoint
-                             ? (2 / h * d[i] - motion.velocity[i]).eval()
-                             : (d[i] / h).eval();
+    motion.velocity[i] = 2 / h * d[i] - motion.velocity[i];
   }
   time += h;
 }

@@ -8,15 +8,8 @@
 
 namespace haptrial::deformable {
 
-/// How a step in time is made, for acceleration a = M^-1 (load + elastic forces - C v):
-enum class TimeRule {
-  kMidpoint,       // implicit midpoint: second order; energy of a linear body kept to rounding
-  kBackwardEuler,  // first order; damps: a vibration of w rad/s loses w² h of its energy a second
-};
-
 struct DynamicOptions {
-  double step{1e-3};  // h > 0 [s]
-  TimeRule rule{TimeRule::kMidpoint};
+  double step{1e-3};           // h > 0 [s]
   double mass_damping{};       // alpha >= 0 of C = alpha M + beta K [1/s]
   double stiffness_damping{};  // beta >= 0; K at the beginning of each step [s]
   double tolerance{1e-9};      // norm of the unbalanced forces over that of all forces, > 0
@@ -28,7 +21,9 @@ struct Motion {
   Vectors velocity;      // [m/s]
 };
 
-/// A body that moves: masses at the vertices. A step solves for the displacement at its end, by
+/// A body that moves: masses at the vertices, acceleration a = M^-1 (load + elastic forces - C v).
+/// Steps are those of the implicit midpoint: second order; the energy of a linear body is kept to
+/// rounding. A step solves for the displacement at its end, by
 /// Newton's method with a line search on the potential of the step. With the linear law the matrix
 /// is constant and factorized once.
 class DynamicSolver {

@@ -180,7 +180,7 @@ TEST(ForceDimensionTest, AFailedReadLeavesTheReadingAlone) {
   EXPECT_EQ(reading.tool.position, Vector3d(1.0, 2.0, 3.0));
 }
 
-TEST(ForceDimensionTest, SlowCallsAndSaturationAreCounted) {
+TEST(ForceDimensionTest, SlowCallsAreCountedAndSaturationIsNoFailure) {
   const StandIn stand_in("stand_in_dhd");
   ForceDimensionDevice device({}, kRigRate, stand_in.path);
   DeviceReading reading;
@@ -191,7 +191,6 @@ TEST(ForceDimensionTest, SlowCallsAndSaturationAreCounted) {
   }
   EXPECT_GE(device.slow_calls(), before + 3);
   EXPECT_TRUE(device.write(Eigen::Vector3d(0.0, 20.0, 0.0)));
-  EXPECT_EQ(device.saturated_writes(), 1u);
   EXPECT_EQ(stand_in.look().force[2], 12.0);
 }
 

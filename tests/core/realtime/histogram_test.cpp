@@ -104,27 +104,6 @@ TEST(DurationHistogramTest, ExtremesFit) {
   EXPECT_EQ(h.min(), 0.0);
 }
 
-TEST(DurationHistogramTest, MergingIsCountingTogether) {
-  DurationHistogram a, b, both;
-  for (const auto d : durations(500, 4)) {
-    a.add(d);
-    both.add(d);
-  }
-  for (const auto d : durations(700, 5)) {
-    b.add(d);
-    both.add(d);
-  }
-  a.merge(b);
-  a.merge(DurationHistogram());
-  for (std::size_t i = 0; i < DurationHistogram::kBins; ++i) {
-    ASSERT_EQ(a.bin(i).count, both.bin(i).count);
-  }
-  EXPECT_EQ(a.count(), 1200u);
-  EXPECT_EQ(a.min(), both.min());
-  EXPECT_EQ(a.max(), both.max());
-  EXPECT_NEAR(a.mean() / both.mean(), 1.0, 1e-12);
-}
-
 TEST(DurationHistogramTest, PercentBeyondItsBoundsIsRejected) {
   DurationHistogram h;
   h.add(1);
