@@ -275,16 +275,6 @@ MatrixXd information_of(const Marginalised& f, const VectorXd& p, MatrixXd& effe
   return information;
 }
 
-double saturated_likelihood(const BinomialData& data) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < data.yes.size(); ++i) {
-    const double yes = data.yes[i], trials = data.trials[i];
-    sum += (yes > 0.0 ? yes * std::log(yes / trials) : 0.0) +
-           (trials > yes ? (trials - yes) * std::log((trials - yes) / trials) : 0.0);
-  }
-  return sum;
-}
-
 }  // namespace
 
 Defined<BinomialMixedModel> binomial_mixed_model(const BinomialData& data, BinomialLink link,
@@ -334,7 +324,7 @@ Defined<BinomialMixedModel> binomial_mixed_model(const BinomialData& data, Binom
   model.fixed.covariance =
       scale.cwiseInverse().asDiagonal() * *inverse * scale.cwiseInverse().asDiagonal();
   model.fixed.log_likelihood = log_binomials(data) - best->value;
-  model.fixed.deviance = 2.0 * (saturated_likelihood(data) + best->value);
+  model.fixed.deviance = 2.0 * (log_likelihood_of_shares(data) + best->value);
   add_normal_tests(model.fixed, f.beta(best->at).cwiseQuotient(scale));
   return model;
 }

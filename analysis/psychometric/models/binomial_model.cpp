@@ -18,17 +18,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Log-likelihood of the observed shares, without binomial coefficients.
-double of_shares(const BinomialData& data) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < data.yes.size(); ++i) {
-    const double yes = data.yes[i], trials = data.trials[i];
-    sum += (yes > 0.0 ? yes * std::log(yes / trials) : 0.0) +
-           (trials > yes ? (trials - yes) * std::log((trials - yes) / trials) : 0.0);
-  }
-  return sum;
-}
-
 /// Coefficients of scaled columns; nothing where the likelihood rises without end.
 std::optional<VectorXd> scored(const BinomialData& data, BinomialLink link,
                                const MatrixXd& columns) {
@@ -74,6 +63,16 @@ std::optional<VectorXd> scored(const BinomialData& data, BinomialLink link,
 }
 
 }  // namespace
+
+double log_likelihood_of_shares(const BinomialData& data) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < data.yes.size(); ++i) {
+    const double yes = data.yes[i], trials = data.trials[i];
+    sum += (yes > 0.0 ? yes * std::log(yes / trials) : 0.0) +
+           (trials > yes ? (trials - yes) * std::log((trials - yes) / trials) : 0.0);
+  }
+  return sum;
+}
 
 void add_normal_tests(BinomialModel& model, const VectorXd& estimates) {
   const double wide = normal_quantile(0.5 + 0.5 * model.level);
@@ -125,7 +124,7 @@ Defined<BinomialModel> binomial_regression(const BinomialData& data, BinomialLin
   model.covariance =
       scale.cwiseInverse().asDiagonal() * *inverse * scale.cwiseInverse().asDiagonal();
   model.log_likelihood = rows.log_likelihood + log_binomials(data);
-  model.deviance = 2.0 * (of_shares(data) - rows.log_likelihood);
+  model.deviance = 2.0 * (log_likelihood_of_shares(data) - rows.log_likelihood);
   add_normal_tests(model, beta->cwiseQuotient(scale));
   return model;
 }

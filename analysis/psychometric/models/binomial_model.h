@@ -76,6 +76,9 @@ struct BinomialRows {
 /// @param eta  (rows). Not finite: the likelihood is 0 there.
 BinomialRows binomial_rows(const BinomialData& data, BinomialLink link, const Eigen::VectorXd& eta);
 
+/// Log-likelihood of the observed shares, without binomial coefficients.
+double log_likelihood_of_shares(const BinomialData& data);
+
 /// Sum of the logarithms of the binomial coefficients.
 double log_binomials(const BinomialData& data);
 
