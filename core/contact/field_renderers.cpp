@@ -65,66 +65,51 @@ SurfacePoint SampledDistance::operator()(const Vector3d& point, std::int32_t) co
   return answer;
 }
 
-namespace {
+void DepthRenderer::start(const Vector3d& tool) noexcept {
+  spring_.start();
+  operations_ = {};
+  contact_ = {};
+  if (tool.allFinite()) {
+    contact_.proxy = tool;
+  }
+}
 
 /// A contact along one normal, or none.
-void press(const Vector3d& tool, double distance, const Vector3d& normal, double period,
-           NormalSpring& spring, Contact& contact) {
-  const double depth = std::max(-distance, 0.0);
-  const double force = spring.force(depth, period);
-  const bool touches = depth > 0.0;
-  contact.depth = depth;
-  contact.state = touches ? ContactState::kSlip : ContactState::kFree;
-  contact.normal = touches ? normal : Vector3d(Vector3d::Zero());
-  contact.force = force * contact.normal;
-  contact.proxy = tool + depth * contact.normal;
-}
-
-void begin(const Vector3d& tool, NormalSpring& spring, Contact& contact, Operations& operations) {
-  spring.start();
-  operations = {};
-  contact = {};
-  if (tool.allFinite()) {
-    contact.proxy = tool;
-  }
-}
-
-bool refused(const Vector3d& tool, Contact& contact) {
+const Contact& DepthRenderer::tick(const Vector3d& tool, double period) noexcept {
   if (!tool.allFinite()) {
-    contact.force.setZero();
-    return true;
-  }
-  return false;
-}
-
-}  // namespace
-
-PenaltyRenderer::PenaltyRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
-                                 const RendererOptions& options)
-    : distance_(mesh, surface), spring_(options) {}
-
-void PenaltyRenderer::start(const Vector3d& tool) noexcept {
-  begin(tool, spring_, contact_, operations_);
-}
-
-const Contact& PenaltyRenderer::tick(const Vector3d& tool, double period) noexcept {
-  if (refused(tool, contact_)) {
+    contact_.force.setZero();
     return contact_;
   }
   ++operations_.ticks;
-  ++operations_.nearest_searches;
+  const SurfacePoint surface = below(tool, operations_);
+  const double depth = std::max(-surface.distance, 0.0);
+  const double force = spring_.force(depth, period);
+  const bool touches = depth > 0.0;
+  contact_.depth = depth;
+  contact_.state = touches ? ContactState::kSlip : ContactState::kFree;
+  contact_.normal = touches ? surface.normal : Vector3d(Vector3d::Zero());
+  contact_.force = force * contact_.normal;
+  contact_.proxy = tool + depth * contact_.normal;
+  return contact_;
+}
+
+PenaltyRenderer::PenaltyRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
+                                 const RendererOptions& options)
+    : DepthRenderer(options), distance_(mesh, surface) {}
+
+SurfacePoint PenaltyRenderer::below(const Vector3d& tool, Operations& operations) noexcept {
+  ++operations.nearest_searches;
   const SurfacePoint nearest = distance_(tool, hint_);
   hint_ = nearest.triangle;
-  press(tool, nearest.distance, nearest.normal, period, spring_, contact_);
-  return contact_;
+  return nearest;
 }
 
 VoxelRenderer::VoxelRenderer(const geometry::Mesh& mesh, const ContactSurface& surface,
                              const RendererOptions& options)
-    : distance_(mesh, surface),
+    : DepthRenderer(options),
+      distance_(mesh, surface),
       grid_(mesh, options.resolution),
-      nearest_(grid_.size()),
-      spring_(options) {
+      nearest_(grid_.size()) {
   const Eigen::Array3i& n = grid_.count;
   parallel_for(static_cast<std::size_t>(n[2]), threads_or_all(0), [&](std::size_t z) {
     std::int32_t hint = -1;
@@ -139,50 +124,31 @@ VoxelRenderer::VoxelRenderer(const geometry::Mesh& mesh, const ContactSurface& s
   });
 }
 
-void VoxelRenderer::start(const Vector3d& tool) noexcept {
-  begin(tool, spring_, contact_, operations_);
-}
-
-const Contact& VoxelRenderer::tick(const Vector3d& tool, double period) noexcept {
-  if (refused(tool, contact_)) {
-    return contact_;
-  }
-  ++operations_.ticks;
+SurfacePoint VoxelRenderer::below(const Vector3d& tool, Operations& operations) noexcept {
   const Eigen::Array3d at = (tool - grid_.origin).array() / grid_.side;
-  SurfacePoint below;
-  if ((at >= 0.0).all() && (at < grid_.count.cast<double>()).all()) {
-    ++operations_.cells;
-    const Eigen::Array3i cell = at.cast<int>();
-    const std::int32_t triangle =
-        nearest_[(static_cast<std::size_t>(cell[2]) * grid_.count[1] + cell[1]) * grid_.count[0] +
-                 cell[0]];
-    if (triangle >= 0) {
-      ++operations_.triangles_tested;
-      below = distance_.of_plane(tool, triangle);
-    }
+  if (!(at >= 0.0).all() || !(at < grid_.count.cast<double>()).all()) {
+    return {};
   }
-  press(tool, below.distance, below.normal, period, spring_, contact_);
-  return contact_;
+  ++operations.cells;
+  const Eigen::Array3i cell = at.cast<int>();
+  const std::int32_t triangle =
+      nearest_[(static_cast<std::size_t>(cell[2]) * grid_.count[1] + cell[1]) * grid_.count[0] +
+               cell[0]];
+  if (triangle < 0) {
+    return {};
+  }
+  ++operations.triangles_tested;
+  return distance_.of_plane(tool, triangle);
 }
 
 DistanceFieldRenderer::DistanceFieldRenderer(const geometry::Mesh& mesh,
                                              const ContactSurface& surface,
                                              const RendererOptions& options)
-    : distance_(mesh, surface, options.resolution), spring_(options) {}
+    : DepthRenderer(options), distance_(mesh, surface, options.resolution) {}
 
-void DistanceFieldRenderer::start(const Vector3d& tool) noexcept {
-  begin(tool, spring_, contact_, operations_);
-}
-
-const Contact& DistanceFieldRenderer::tick(const Vector3d& tool, double period) noexcept {
-  if (refused(tool, contact_)) {
-    return contact_;
-  }
-  ++operations_.ticks;
-  operations_.cells += distance_.holds(tool) ? 1 : 0;
-  const SurfacePoint below = distance_(tool);
-  press(tool, below.distance, below.normal, period, spring_, contact_);
-  return contact_;
+SurfacePoint DistanceFieldRenderer::below(const Vector3d& tool, Operations& operations) noexcept {
+  operations.cells += distance_.holds(tool) ? 1 : 0;
+  return distance_(tool);
 }
 
 }  // namespace haptrial::contact
