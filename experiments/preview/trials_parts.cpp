@@ -12,7 +12,6 @@
 #include "core/base/counted.h"
 #include "core/questions/question_kind.h"
 #include "core/render/gl/image.h"
-#include "experiments/preview/film.h"
 #include "experiments/preview/preview_pictures.h"
 
 namespace haptrial::experiments {

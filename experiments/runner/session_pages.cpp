@@ -13,7 +13,6 @@
 #include "core/questions/question_kind.h"
 #include "core/questions/question_kinds.h"
 #include "core/render/gl/image.h"
-#include "experiments/runner/earlier_run.h"
 #include "experiments/screen/screen.h"
 
 namespace haptrial::experiments {

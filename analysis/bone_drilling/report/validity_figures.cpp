@@ -10,7 +10,6 @@
 #include "analysis/bone_drilling/report/validity_words.h"
 #include "analysis/document/palette.h"
 #include "analysis/statistics/design/wording.h"
-#include "core/base/file_text.h"
 
 namespace haptrial::analysis::drilling {
 namespace {

@@ -7,7 +7,6 @@
 
 #include "analysis/files/delimited.h"
 #include "analysis/files/new_folder.h"
-#include "analysis/force_training/score/path_places.h"
 #include "analysis/force_training/study/session_recalls.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"

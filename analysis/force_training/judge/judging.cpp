@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 
-#include "analysis/document/number.h"
 #include "analysis/force_training/judge/judged_curves.h"
 
 namespace haptrial::analysis {

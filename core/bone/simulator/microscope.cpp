@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/base/definition/schema.h"
-#include "core/base/definition/table_vector.h"
 
 namespace haptrial::bone {
 namespace {

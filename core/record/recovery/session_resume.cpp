@@ -10,7 +10,6 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
 #include "core/record/recovery/repair.h"
-#include "core/record/table/schema.h"
 
 namespace haptrial::record {
 namespace {

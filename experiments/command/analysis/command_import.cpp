@@ -8,7 +8,6 @@
 #include "analysis/files/csv.h"
 #include "core/base/counted.h"
 #include "core/base/error.h"
-#include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/psychophysics/import_trials.h"
 

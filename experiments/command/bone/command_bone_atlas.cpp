@@ -13,7 +13,6 @@
 #include "core/bone/atlas/compare_labels.h"
 #include "core/bone/atlas/label_scan.h"
 #include "core/bone/data/load_bone.h"
-#include "experiments/command/arguments.h"
 #include "experiments/command/bone/bone_carving.h"
 #include "experiments/command/bone/bone_options.h"
 #include "experiments/command/subcommand.h"

@@ -11,7 +11,6 @@
 #include "core/bone/model/bone_model.h"
 #include "core/bone/model/tidy.h"
 #include "experiments/command/arguments.h"
-#include "experiments/command/bone/bone_carving.h"
 #include "experiments/command/bone/bone_options.h"
 #include "experiments/command/subcommand.h"
 

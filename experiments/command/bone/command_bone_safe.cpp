@@ -4,7 +4,6 @@
 
 #include "core/base/counted.h"
 #include "core/base/whole_file.h"
-#include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/drilling/learn_score.h"
 

@@ -13,7 +13,6 @@
 #include "core/base/file_text.h"
 #include "core/deformable/springs/constants_table.h"
 #include "experiments/command/deform/calibration_pictures.h"
-#include "experiments/command/deform/deform_files.h"
 
 namespace haptrial::experiments {
 namespace {

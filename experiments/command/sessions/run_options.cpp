@@ -4,7 +4,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "experiments/study/session_name.h"
 #include "protocols/definition/definition.h"

@@ -13,7 +13,6 @@
 #include "core/base/definition/schema.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/file_text.h"
 #include "core/base/whole_file.h"
 #include "experiments/runner/version.h"
 #include "experiments/studies/power_plan.h"

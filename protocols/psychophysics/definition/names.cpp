@@ -10,7 +10,6 @@
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
-#include "core/base/nearest.h"
 
 namespace haptrial::protocols {
 namespace {
