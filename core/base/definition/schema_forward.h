@@ -2,7 +2,7 @@
 
 namespace haptrial {
 
-/// For headers that name tables and schemas of a definition and use neither.
+// Forward declarations for headers that name tables and schemas and do not use them.
 class Table;
 template <class T>
 class Schema;

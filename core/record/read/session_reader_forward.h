@@ -2,7 +2,7 @@
 
 namespace haptrial::record {
 
-/// For headers that name a reader and do not use it.
+// A forward declaration for headers that name a reader and do not use it.
 class SessionReader;
 
 }  // namespace haptrial::record
