@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "experiments/console/console_messages.h"
-#include "experiments/server/server.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -32,22 +31,8 @@ void check_names(const protocols::AuxiliaryPages& sides) {
   }
 }
 
-ServerOptions server_options(const ConsoleOptions& options) {
-  ServerOptions server;
-  server.address = options.address;
-  server.port = options.port;
-  server.allow_remote = options.allow_remote;
-  server.events_per_second = options.events_per_second;
-  server.request_time = options.request_time;
-  server.workers = options.workers;
-  server.event_streams = options.event_streams;
-  server.waiting = options.waiting;
-  server.on_refusal = options.on_refusal;
-  return server;
-}
-
 ServerOptions watch_options(const ConsoleOptions& options) {
-  ServerOptions server = server_options(options);
+  ServerOptions server = options;
   server.address = options.watch_address;
   server.port = 0;
   server.allow_remote = true;
@@ -102,7 +87,7 @@ void add_routes_of(const std::shared_ptr<protocols::AuxiliaryPage>& side,
 class Console::Implementation {
  public:
   Implementation(SessionControl& control, const ConsoleOptions& options)
-      : control_(control), server_(server_options(options), routes(options)) {
+      : control_(control), server_(options, routes(options)) {
     if (!options.watch_address.empty()) {
       watch_.emplace(watch_options(options), watch_routes(options.terminal));
     }

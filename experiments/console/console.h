@@ -1,32 +1,22 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "experiments/control/session_control.h"
+#include "experiments/server/server.h"
 #include "protocols/interface/auxiliary_page.h"
 
 namespace haptrial::experiments {
 
-struct ConsoleOptions {
-  std::string address{"127.0.0.1"};  // numeric, of one network interface
-  int port{0};                       // 0: any that is free
-  bool allow_remote{false};          // other addresses than loopback
-  double events_per_second{15.0};    // to each page, 1 to 60
-  double request_time{2.0};          // a request that takes longer is refused > 0 [s]
-  int workers{8};        // requests at a time of those who have not shown the token, >= 1
-  int event_streams{4};  // pages at a time, >= 1
-  int waiting{32};       // connections that may wait for a worker
+struct ConsoleOptions : ServerOptions {
   protocols::AuxiliaryPages sides{};  // pages beside the console's
   std::string watch_address{};        // of a copy of the page that only looks; may be reached from
                                       // other machines. Empty: there is none
   bool terminal{false};  // Escape in the session's terminal stops, too, which the page then says
-  /// Gets a sentence for each of the first refusals (RefusalLog); on a thread of the console.
-  std::function<void(const std::string&)> on_refusal;
 };
 
 /// The experimenter's console: one page, served on threads of its own, that shows
