@@ -271,16 +271,7 @@ std::optional<double> ProcedureSummary::value(std::string_view metric) const {
 ProcedureSummary summarize(const Procedure& procedure, const MetricOptions& options,
                            StudyBones& bones) {
   ProcedureSummary summary;
-  summary.session = procedure.session;
-  summary.participant = procedure.participant;
-  summary.group = procedure.group;
-  summary.session_number = procedure.session_number;
-  summary.session_name = procedure.session_name;
-  summary.number = procedure.number;
-  summary.simulated = procedure.simulated;
-  summary.completed = procedure.completed;
-  summary.bone = procedure.bone;
-  summary.field = procedure.field;
+  static_cast<ProcedureIdentity&>(summary) = procedure;
   DrillingMeter meter(procedure.bone, procedure.pose_WB, procedure.tools, procedure.rate, bones,
                       procedure.plans);
   visit_in_order(procedure, meter);

@@ -51,16 +51,7 @@ struct MetricOptions {
 };
 
 /// Everything that a study keeps of a procedure: a few megabytes where the procedure has hundreds.
-struct ProcedureSummary {
-  std::string session;
-  std::string participant;
-  std::string group;
-  int session_number{1};       // of the participant's sessions, from 1
-  std::string session_name{};  // in the definition's words; empty: it has none
-  int number{1};
-  bool simulated{true};
-  bool completed{true};
-  std::shared_ptr<const bone::BoneModel> bone;
+struct ProcedureSummary : ProcedureIdentity {
   std::vector<std::uint32_t> removed;  // voxels that a burr emptied, ascending index in the grid
   std::vector<std::uint8_t> removed_seen;  // (removed) 1: visible when it was removed
   Visibility visibility;
@@ -68,7 +59,6 @@ struct ProcedureSummary {
   StrokeFigures strokes;
   Usage usage;
   Achieved achieved;
-  std::optional<record::FieldRow> field;  // heat and blood, where there may be any
   /// Removals by structure of MetricOptions; a structure that this bone does not have has none.
   std::vector<NearRemovals> near;
   std::vector<PhaseSpan> phases;  // none: not divided

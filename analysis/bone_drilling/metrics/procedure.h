@@ -108,12 +108,8 @@ struct BegunWork {
   std::string work;
 };
 
-/// One drilling of one participant: everything that metrics are made from. Rows of every list are
-/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
-/// and these before the cuts.
-///
-/// Voxels are where they were at the beginning, also those of pieces that were carried.
-struct Procedure {
+/// Whose drilling it was, of which bone, and how it ended.
+struct ProcedureIdentity {
   std::string session;  // name of the file
   std::string participant;
   std::string group;
@@ -122,8 +118,18 @@ struct Procedure {
   int number{1};               // of the session's procedures: the trial, from 1
   bool simulated{true};        // the participant is a virtual subject
   bool completed{true};        // its last pass came to its end
-  double rate{1000.0};         // of ticks [Hz]
   std::shared_ptr<const bone::BoneModel> bone;
+  /// Heat and blood since the bone was new; none where the definition has neither.
+  std::optional<record::FieldRow> field;
+};
+
+/// One drilling of one participant: everything that metrics are made from. Rows of every list are
+/// in ascending order of their sequence numbers, and of one tick a crumb went before the removals
+/// and these before the cuts.
+///
+/// Voxels are where they were at the beginning, also those of pieces that were carried.
+struct Procedure : ProcedureIdentity {
+  double rate{1000.0};  // of ticks [Hz]
   Eigen::Isometry3d pose_WB{Eigen::Isometry3d::Identity()};
   std::vector<ProcedureTool> tools;
   std::vector<ToolTick> ticks;
@@ -132,8 +138,6 @@ struct Procedure {
   std::vector<View> views;
   std::vector<Debris> crumbs;
   std::vector<Torn> tears;
-  /// Heat and blood since the bone was new; none where the definition has neither.
-  std::optional<record::FieldRow> field;
   std::vector<record::PieceRow> pieces;  // none where the definition has no [osteotomy]
   std::vector<record::ScrewRow> screws;  // likewise
   ProcedurePlans plans;
