@@ -8,6 +8,7 @@
 #include "analysis/bone_drilling/feedback/procedure_tables.h"
 #include "analysis/files/sha256.h"
 #include "analysis/statistics/base/distributions.h"
+#include "analysis/statistics/relation/centered_design.h"
 #include "analysis/statistics/relation/cross_validated.h"
 
 namespace haptrial::analysis::drilling {
@@ -50,7 +51,7 @@ std::vector<ScoreMetric> usable_metrics(std::span<const RatedSummary> procedures
     }
     metric.low = *std::min_element(values.begin(), values.end());
     metric.high = *std::max_element(values.begin(), values.end());
-    return !(metric.low < metric.high);
+    return !vary_beyond_rounding(values);
   });
   return metrics;
 }

@@ -57,15 +57,24 @@ Value injured_structures(const Parts& p) {
   return count(injured.size());
 }
 
-/// Mean diameter over the time of drilling.
+/// Mean diameter over the time of drilling; exactly that of a burr which alone drilled.
 Value mean_burr_diameter(const Parts& p) {
   double sum = 0.0;
   double time = 0.0;
+  double least = std::numeric_limits<double>::infinity(), greatest = 0.0;
   for (std::size_t tool = 0; tool < p.procedure.tools.size(); ++tool) {
-    sum += 2.0 * p.procedure.tools[tool].burr_radius * p.summary.usage.tools[tool].drilling;
-    time += p.summary.usage.tools[tool].drilling;
+    const double diameter = 2.0 * p.procedure.tools[tool].burr_radius;
+    const double drilling = p.summary.usage.tools[tool].drilling;
+    if (drilling > 0.0) {
+      sum += diameter * drilling;
+      time += drilling;
+      least = std::min(least, diameter);
+      greatest = std::max(greatest, diameter);
+    }
   }
-  return time > 0.0 ? Value(1e3 * sum / time) : std::nullopt;
+  // Rounding would otherwise give everybody with one burr a diameter of their own.
+  return time > 0.0 ? Value(std::clamp(1e3 * sum / time, 1e3 * least, 1e3 * greatest))
+                    : std::nullopt;
 }
 
 struct Definition {

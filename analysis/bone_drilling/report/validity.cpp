@@ -9,6 +9,7 @@
 
 #include "analysis/bone_drilling/report/validity_table.h"
 #include "analysis/statistics/base/p_adjust.h"
+#include "analysis/statistics/relation/centered_design.h"
 #include "core/base/error.h"
 
 namespace haptrial::analysis::drilling {
@@ -188,9 +189,7 @@ void add_combined(Validity& v, std::span<const ProcedureSummary> procedures) {
         column.push_back(*procedures[i].values[m]);
       }
     }
-    const bool whole = !column.empty() && column.size() == c.rows.size();
-    const bool differs = whole && *std::min_element(column.begin(), column.end()) <
-                                      *std::max_element(column.begin(), column.end());
+    const bool differs = column.size() == c.rows.size() && vary_beyond_rounding(column);
     (differs ? c.metrics : c.left_out).push_back(v.metrics[m].kind.name);
     if (differs) {
       columns.push_back(std::move(column));

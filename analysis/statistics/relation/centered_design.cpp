@@ -29,6 +29,11 @@ double rounding_of(std::span<const double> values) {
   return static_cast<double>(values.size()) * unit * unit;
 }
 
+bool vary_beyond_rounding(std::span<const double> values) {
+  const auto m = moments(values);
+  return m && m->squares > rounding_of(values);
+}
+
 Defined<CenteredDesign> centered_design(const Eigen::MatrixXd& predictors) {
   const Eigen::Index p = predictors.cols();
   CenteredDesign design{predictors, Eigen::VectorXd(p), Eigen::VectorXd(p)};

@@ -26,4 +26,7 @@ Defined<CenteredDesign> centered_design(const Eigen::MatrixXd& predictors);
 /// The squares that rounding of these values can leave in deviations that should be 0.
 double rounding_of(std::span<const double> values);
 
+/// Whether finite values differ by more than rounding makes of equal ones.
+bool vary_beyond_rounding(std::span<const double> values);
+
 }  // namespace haptrial::analysis

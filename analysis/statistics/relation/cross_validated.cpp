@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "analysis/statistics/base/decomposition.h"
+#include "analysis/statistics/relation/centered_design.h"
 #include "analysis/statistics/relation/correlation.h"
 
 namespace haptrial::analysis {
@@ -28,9 +29,10 @@ class RidgePath {
     MatrixXd z = predictors.rowwise() - base_.mean.transpose();
     for (Index j = 0; j < z.cols(); ++j) {
       const double deviation = std::sqrt(z.col(j).squaredNorm() / std::max(1.0, n - 1.0));
-      const bool varies = predictors.col(j).minCoeff() < predictors.col(j).maxCoeff();
-      base_.scale[j] = varies ? deviation : 0.0;
-      z.col(j) *= varies ? 1.0 / deviation : 0.0;
+      const bool differs = vary_beyond_rounding(
+          {predictors.col(j).data(), static_cast<std::size_t>(predictors.rows())});
+      base_.scale[j] = differs ? deviation : 0.0;
+      z.col(j) *= differs ? 1.0 / deviation : 0.0;
     }
     const ThinSvd svd = thin_svd(z);
     singular_ = svd.singular;

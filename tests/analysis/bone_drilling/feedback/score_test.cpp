@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <numeric>
@@ -131,6 +132,24 @@ TEST(ScoreTest, AnotherCaseIsRefusedInASentence) {
   const std::set<std::string> digests{bone_digest(test::block(3, 3, 4)), bone_digest(soft),
                                       bone_digest(soft_structure)};
   EXPECT_EQ(digests.size(), 3u) << "the same labels, another bone";
+}
+
+TEST(ScoreTest, AMetricThatDiffersByRoundingAloneTeachesNothing) {
+  SimulatedStudy study(7);
+  const auto kinds = metric_kinds();
+  const auto at = std::find_if(kinds.begin(), kinds.end(),
+                               [](const MetricKind& k) { return k.name == "burr_diameter"; });
+  const auto diameter = static_cast<std::size_t>(at - kinds.begin());
+  std::vector<RatedSummary> rated;
+  for (int n = 0; n < 12; ++n) {
+    for (RatedSummary& each : study.person("P" + std::to_string(n), 2)) {
+      each.summary.values[diameter] = std::nextafter(6.0, rated.size() % 3 == 0 ? 7.0 : 5.0);
+      rated.push_back(std::move(each));
+    }
+  }
+  const ScoreModel model = *learn_score(rated);
+  EXPECT_TRUE(std::none_of(model.metrics.begin(), model.metrics.end(),
+                           [](const ScoreMetric& m) { return m.name == "burr_diameter"; }));
 }
 
 TEST(ScoreTest, AFileGivesTheSameScore) {

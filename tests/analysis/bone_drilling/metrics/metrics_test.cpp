@@ -64,6 +64,16 @@ TEST_F(MetricsTest, ScalarsHaveTheirUnits) {
   EXPECT_THROW((void)found.value("charm"), std::invalid_argument);
 }
 
+TEST_F(MetricsTest, ABurrThatAloneDrilledHasItsOwnDiameter) {
+  std::set<double> diameters;
+  for (int last = 10; last < 28; ++last) {
+    Procedure p = drilled("A", "x", last, bone_);
+    p.tools.at(0).burr_radius = 0.0029;  // sums of it round differently from time to time
+    diameters.insert(*summarize(p, {}, study_).value("burr_diameter"));
+  }
+  EXPECT_EQ(diameters.size(), 1u);
+}
+
 TEST_F(MetricsTest, StructuresCanBeChosen) {
   const ProcedureSummary vital = summary("A", "x", 20);
   ASSERT_EQ(vital.near.size(), 1u);
