@@ -84,6 +84,9 @@ void add_ratings(Validity& v, const Eigen::MatrixXd& table) {
       complete.push_back(i);
     }
   }
+  for (const auto& scores : table.colwise()) {
+    v.scored.push_back(static_cast<std::size_t>(scores.array().isFinite().count()));
+  }
   if (table.cols() > 0) {
     v.agreement = intraclass_correlation(table(complete, Eigen::all));
   }

@@ -98,6 +98,7 @@ struct Validity {
   std::vector<std::size_t> participant;       // (procedures) number, in order of first appearance
   std::vector<std::optional<double>> rating;  // (procedures) mean over raters
   std::vector<std::string> raters;            // by name
+  std::vector<std::size_t> scored;            // (raters) procedures that each scored
   std::size_t rated{0};                       // procedures with a rating
   bool simulated{false};                      // a participant or a rater
   bool simulated_raters{false};

@@ -159,6 +159,9 @@ void Report::add_ratings() {
       counted(v_.raters.size(), "rater"),
       v_.simulated_raters ? " (programs are among the raters)" : "",
       v_.raters.size() > 1 ? " A procedure's rating is the mean over its raters." : ""));
+  if (const std::string uneven = uneven_raters(v_); !uneven.empty()) {
+    document_.alarm(uneven + ".");
+  }
   picture("figure-16-ratings");
   std::vector<Row> rows;
   for (const GroupValues* g : shown_groups(v_)) {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_words.h"
@@ -69,6 +71,9 @@ std::vector<std::string> summary_lines(const ValidityResult& result) {
     lines.push_back(counted(result.procedures.size(), "procedure") + ", not rated yet");
   } else {
     lines = rating_lines(v);
+    if (std::string uneven = uneven_raters(v); !uneven.empty()) {
+      lines.push_back(std::move(uneven));
+    }
   }
   for (std::string& line : learning_lines(result.learned)) {
     lines.push_back(std::move(line));

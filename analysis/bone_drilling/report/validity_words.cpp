@@ -26,6 +26,20 @@ std::string mean_word(const GroupValues& group) {
                                                 : interval_word(group.participant_means);
 }
 
+std::string uneven_raters(const Validity& v) {
+  if (std::all_of(v.scored.begin(), v.scored.end(), [&](std::size_t n) { return n == v.rated; })) {
+    return "";
+  }
+  std::vector<std::string> counts;
+  for (std::size_t r = 0; r < v.raters.size(); ++r) {
+    counts.push_back(fmt::format("{} {}", v.raters[r], v.scored[r]));
+  }
+  return fmt::format(
+      "Not every rater scored all of the {} rated procedures ({}), so a difference of ratings may "
+      "be one of raters",
+      v.rated, fmt::join(counts, ", "));
+}
+
 std::string word(const Defined<double>& p) { return p ? p_value(*p) : "–"; }
 
 std::string correlation_word(const Defined<Correlation>& c) {

@@ -32,6 +32,10 @@ std::string error_word(const CrossValidated& fit);
 /// "force near vital structures (N)".
 std::string name_of(const MetricKind& kind);
 
+/// A sentence if raters scored different procedures: "Not every rater scored all of the 30 rated
+/// procedures (li 30, smith 14), so …"; else empty.
+std::string uneven_raters(const Validity& v);
+
 /// Every group once: a side that is one group is not listed again.
 std::vector<const GroupValues*> shown_groups(const Validity& v);
 /// Among how many metrics Holm's method adjusts.

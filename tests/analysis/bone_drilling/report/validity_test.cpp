@@ -13,8 +13,8 @@
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_json.h"
 #include "analysis/bone_drilling/report/validity_report.h"
-#include "analysis/bone_drilling/report/validity_table.h"
 #include "analysis/bone_drilling/report/validity_summary.h"
+#include "analysis/bone_drilling/report/validity_table.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/error.h"
 #include "core/base/random.h"
@@ -212,6 +212,21 @@ TEST(ValidityTest, AveragesRatersAndSaysHowTheyAgree) {
               (study.ratings[0].score + study.ratings[1].score + study.ratings[2].score) / 3.0,
               1e-14);
   EXPECT_FALSE(made(5, 1.0, 0.5).validity().agreement);
+}
+
+// A strict rater of novices alone makes experts of whoever that rater did not see.
+TEST(ValidityTest, RatersOfDifferentProceduresAreNamed) {
+  Study study = made(5, 1.0, 0.5, 2);
+  const std::string whole = to_markdown(validity_report(result_of(study), {}));
+  EXPECT_THAT(whole, Not(HasSubstr("Not every rater")));
+  std::erase_if(study.ratings, [](const Rating& rating) {
+    return rating.rater == "rater1" && rating.session < "S09";
+  });
+  const std::string sentence =
+      "Not every rater scored all of the 30 rated procedures (rater0 30, rater1 14), so a "
+      "difference of ratings may be one of raters";
+  EXPECT_THAT(to_markdown(validity_report(result_of(study), {})), HasSubstr(sentence));
+  EXPECT_THAT(summary_lines(result_of(study)), testing::Contains(HasSubstr(sentence)));
 }
 
 TEST(ValidityTest, WorksWithoutRatingsAndWithHoles) {
