@@ -10,6 +10,7 @@
 #include "analysis/bone_drilling/report/learned_quantities.h"
 #include "analysis/bone_drilling/report/phase_section.h"
 #include "analysis/bone_drilling/report/ratings.h"
+#include "analysis/bone_drilling/report/session_files.h"
 #include "analysis/bone_drilling/report/validity.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_json.h"
@@ -33,7 +34,22 @@ struct Sessions {
   std::vector<NerveProcedure> nerves;
   std::vector<HintProcedure> hints;
   std::vector<CrossingProcedure> crossings;
+  std::vector<SessionFiles> files;
 };
+
+SessionFiles files_of(const record::SessionReader& reader,
+                      const std::vector<ProcedureSummary>& procedures) {
+  SessionFiles files;
+  files.session = reader.path().filename().string();
+  const auto passes = counted_passes(reader);
+  for (const ProcedureSummary& p : procedures) {
+    files.bones[{passes.at(p.number).back().pass.condition, p.number}] = p.bone;
+  }
+  if (reader.has(record::table_of<record::HintLimitRow>())) {
+    files.limits = reader.rows<record::HintLimitRow>();
+  }
+  return files;
+}
 
 template <class T>
 void move_to(std::vector<T>& all, std::vector<T>& some) {
@@ -57,6 +73,7 @@ Sessions sessions_of(const ValidityStudy& study) {
       own.nerves = load_nerves(reader, setup.group);
       own.hints = load_hints(reader, own.procedures);
       own.crossings = load_crossings(reader, own.procedures);
+      own.files = {files_of(reader, own.procedures)};
       std::erase_if(own.nerves, [&](const auto& nerve) { return marked.contains(nerve.number); });
     };
   });
@@ -66,6 +83,7 @@ Sessions sessions_of(const ValidityStudy& study) {
     move_to(all.nerves, file.nerves);
     move_to(all.hints, file.hints);
     move_to(all.crossings, file.crossings);
+    move_to(all.files, file.files);
   }
   return all;
 }
@@ -106,6 +124,7 @@ ValidityResult analyze(const ValidityStudy& study) {
   result.nerves = std::move(sessions.nerves);
   result.hints = std::move(sessions.hints);
   result.crossings = std::move(sessions.crossings);
+  result.remarks = remarks_on_files(sessions.files);
   result.hint_effects = hint_effects(result.hints, result.procedures);
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");

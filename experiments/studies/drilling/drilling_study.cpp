@@ -135,7 +135,7 @@ std::vector<std::string> analyze_drillings(const AnalysisRequest& request) {
         "drillings nothing is learned from session to session; leave them out");
   }
   drilling::ValidityResult result = drilling::analyze(study);
-  result.remarks = std::move(remarks);
+  std::ranges::move(remarks, std::back_inserter(result.remarks));
   const PictureFolder pictures(request.out);
   result.pictures = visibility_pictures(result.procedures, definition, pictures.path());
   const auto own = analysis::own_findings(request.files.files);
