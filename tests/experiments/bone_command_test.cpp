@@ -87,6 +87,8 @@ TEST_F(BoneCommandTest, AScanGetsTheLabelsOfAnotherEar) {
   EXPECT_THAT(result.output,
               AllOf(HasSubstr("known.nrrd: correlation 0."), HasSubstr("one ear says nothing"),
                     HasSubstr("labels of 1 registered ear"), HasSubstr("facial nerve")));
+  expect_refusal("haptrial bone atlas scan.nrrd new.nrrd --side right --ears known.nrrd known.nrrd",
+                 "known.nrrd: is the same ear as known.nrrd; give each ear once");
   expect_refusal("haptrial bone atlas scan.nrrd new.nrrd --side up --ears known.nrrd",
                  "--side is 'up'; allowed: right, left");
   expect_refusal("haptrial bone atlas scan.nrrd new.nrrd --side left --ears absent.nrrd",

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/counted.h"
@@ -48,11 +49,20 @@ void check_size(const bone::BoneModel& scan) {
   }
 }
 
+/// @throws InputError also for an ear that was given before: margins would be of one ear with
+/// itself, and so nothing.
 std::vector<bone::BoneModel> load_ears(const std::vector<std::string>& files) {
   std::vector<bone::BoneModel> ears;
   for (const std::string& file : files) {
-    ears.push_back(bone::load_bone(file));
-    ears.back().name = file;
+    bone::BoneModel ear = bone::load_bone(file);
+    ear.name = file;
+    for (const bone::BoneModel& before : ears) {
+      if (before.grid.size == ear.grid.size && before.labels == ear.labels) {
+        throw InputError(
+            fmt::format("{}: is the same ear as {}; give each ear once", file, before.name));
+      }
+    }
+    ears.push_back(std::move(ear));
   }
   return ears;
 }
