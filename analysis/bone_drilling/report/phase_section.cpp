@@ -43,6 +43,8 @@ void add_means(FindingTable& rows, const ValidityResult& result, const Finding& 
       mean.value = group.participant_means->mean;
       mean.low = group.participant_means->low;
       mean.high = group.participant_means->high;
+    } else if (group.mean) {
+      mean.value = *group.mean;
     } else {
       mean.why_not = group.participant_means.because();
     }

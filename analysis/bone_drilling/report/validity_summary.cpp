@@ -7,6 +7,7 @@
 #include "analysis/bone_drilling/report/nerve_section.h"
 #include "analysis/bone_drilling/report/validity_figures.h"
 #include "analysis/bone_drilling/report/validity_words.h"
+#include "analysis/document/number.h"
 #include "analysis/statistics/design/wording.h"
 
 namespace haptrial::analysis::drilling {
@@ -16,9 +17,13 @@ constexpr double kAlpha = 0.05;
 
 /// "3.438, 95 % CI 3.290 to 3.585 (8 participants, 16 procedures)".
 std::string mean_of(const GroupValues& group) {
-  return fmt::format("{} ({}, {})", mean_with_interval(group.participant_means),
-                     counted(group.participants, "participant"),
-                     counted(group.procedures, "procedure"));
+  const auto& means = group.participant_means;
+  return fmt::format(
+      "{} ({}, {})",
+      !means && group.mean
+          ? fmt::format("{} without an interval, because {}", number(*group.mean), means.because())
+          : mean_with_interval(means),
+      counted(group.participants, "participant"), counted(group.procedures, "procedure"));
 }
 
 std::vector<std::string> rating_lines(const Validity& v) {

@@ -351,6 +351,19 @@ TEST(ValidityTest, CountsWhatThereIsAndListsEveryGroupOnce) {
   EXPECT_THAT(report, Not(testing::ContainsRegex("[^0-9]1 (participants|procedures|metrics)")));
 }
 
+TEST(ValidityTest, AMeanOfValuesThatDoNotVaryHasNoInterval) {
+  Study study = made(5, 1.0, 0.5);
+  for (Rating& rating : study.ratings) {
+    rating.score = rating.session < "S09" ? 4.5 : rating.score;
+  }
+  const ValidityResult result = result_of(study);
+  EXPECT_THAT(summary_lines(result)[0],
+              HasSubstr("with experience 4.500 without an interval, because the values do not vary "
+                        "(8 participants, 16 procedures)"));
+  EXPECT_THAT(to_markdown(validity_report(result, {})),
+              HasSubstr("| all experts | 8 | 16 | 4.500 |"));
+}
+
 /// A trainee's first osteotomy: the figures of one participant have no interval, and are known.
 TEST(ValidityTest, TheMeanOfOneParticipantIsShownWithoutAnInterval) {
   const Study all = made(12, 1.0, 0.5);
