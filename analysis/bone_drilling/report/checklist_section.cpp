@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -88,14 +89,28 @@ FindingRow item_row(const CheckedStudy& study, std::size_t n) {
       plain_finding("as_measured", "as its measure proposed", percent(as_measured(study, n)), "%")};
 }
 
-Finding agreement_finding(const Defined<Intraclass>& agreement) {
+/// Whether no participant has two of the procedures.
+bool of_different_people(const ByProcedure& all, const std::vector<ProcedureSummary>& procedures) {
+  std::set<std::string> people;
+  for (const auto& [key, rows] : all) {
+    const auto at = std::ranges::find(
+        procedures, key, [](const ProcedureSummary& p) { return std::pair(p.session, p.number); });
+    people.insert(at != procedures.end() ? at->participant : key.first);
+  }
+  return people.size() == all.size();
+}
+
+/// @param apart  procedures are of different participants: else there is no interval
+Finding agreement_finding(const Defined<Intraclass>& agreement, bool apart) {
   Finding finding{.name = "icc_2_1",
                   .title = "Agreement of one rater with another in the total, ICC(2,1)",
                   .form = JsonForm::kEstimate};
   if (agreement && agreement->random_raters) {
     finding.value = agreement->random_raters->value;
-    finding.low = agreement->random_raters->low;
-    finding.high = agreement->random_raters->high;
+    if (apart) {
+      finding.low = agreement->random_raters->low;
+      finding.high = agreement->random_raters->high;
+    }
     finding.n = agreement->targets;
   } else {
     finding.why_not = agreement ? agreement->random_raters.because() : agreement.because();
@@ -146,9 +161,10 @@ FindingList checklist_findings(const CheckedStudy& study,
     return list;
   }
   const ByProcedure all = by_procedure(study);
+  const bool apart = of_different_people(all, procedures);
   list.findings = {plain_finding("raters", "raters", raters_of(study).size()),
                    plain_finding("procedures", "procedures", all.size()),
-                   agreement_finding(checklist_agreement(study))};
+                   agreement_finding(checklist_agreement(study), apart)};
   FindingTable totals{"groups", ""};
   for (const std::string& group : groups) {
     totals.rows.push_back(total_row(study, all, procedures, group));
@@ -160,8 +176,13 @@ FindingList checklist_findings(const CheckedStudy& study,
   list.tables = {totals, items};
   Document words;
   words.paragraph(
-      "Raters filled it in without knowing whose procedures they were. The total is the weighted "
-      "share of all points. They saw what the measures proposed, which brings them together.");
+      std::string(
+          "Raters filled it in without knowing whose procedures they were. The total is the "
+          "weighted share of all points. They saw what the measures proposed, which brings "
+          "them together.") +
+      (apart ? ""
+             : " An interval of their agreement would count every procedure as independent, so "
+               "there is none: participants have several."));
   list.blocks = words.blocks;
   return list;
 }

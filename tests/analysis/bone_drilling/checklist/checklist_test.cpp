@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "analysis/bone_drilling/checklist/checklist_sheet.h"
@@ -175,6 +176,17 @@ TEST(ChecklistSectionTest, AgreementIsThatOfTheTotals) {
   const std::string text = to_markdown(document);
   EXPECT_THAT(text, HasSubstr("Checklist: Mastoidectomy"));
   EXPECT_THAT(text, HasSubstr("ICC(2,1)"));
+  EXPECT_THAT(text, HasSubstr("there is none: participants have several"));
+  const Finding one_person = checklist_findings(study, {}, {}).findings.back();
+  EXPECT_TRUE(std::isnan(one_person.low)) << "four procedures of one participant";
+  std::vector<ProcedureSummary> people(4);
+  for (int n = 0; n < 4; ++n) {
+    people[static_cast<std::size_t>(n)].session = "S01.h5";
+    people[static_cast<std::size_t>(n)].number = n + 1;
+    people[static_cast<std::size_t>(n)].participant = std::string(1, static_cast<char>('a' + n));
+  }
+  EXPECT_EQ(checklist_findings(study, people, {}).findings.back().low,
+            agreement->random_raters->low);
 }
 
 }  // namespace
