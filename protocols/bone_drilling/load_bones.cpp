@@ -159,9 +159,24 @@ Eigen::Vector3d before_bones(const BoneDefinition& d) {
   return camera.eye - std::max(0.25 * nearest, nearest - kBefore) * towards;
 }
 
+std::vector<std::string> absent_feedback(const BoneDefinition& d, const fs::path& folder) {
+  std::vector<std::string> absent;
+  const auto look_for = [&](const char* key, const std::string& file) {
+    if (d.trainee_page && !file.empty() && !fs::exists(folder / file)) {
+      absent.push_back(fmt::format("feedback.{} {}", key, file));
+    }
+  };
+  look_for("study", d.experts_study);
+  look_for("score", d.score_file);
+  look_for("phases", d.phases_file);
+  look_for("checklist", d.checklist_file);
+  return absent;
+}
+
 }  // namespace
 
 void load_bones(BoneDefinition& d, const fs::path& folder) {
+  d.absent_files = absent_feedback(d, folder);
   if (d.hints) {
     hint::load_limits(*d.hints, folder);
   }

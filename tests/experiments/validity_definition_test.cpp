@@ -100,6 +100,24 @@ TEST(ValidityDefinitionTest, WhatDoesNotFitIsSaid) {
       HasSubstr("write one for each of the 3 structures"));
 }
 
+TEST(ValidityDefinitionTest, FilesOfThePageThatAreNotThereAreNamedBeforeTheSession) {
+  const test::TemporaryFolder folder;
+  const std::string coarse =
+      test::replaced(test::read_text(shipped()), "seed = 1 ", "spacing = 0.001\nseed = 1 ");
+  test::write_text(folder / "study.toml", coarse +
+                                              "[feedback]\npage = true\nscore = \"score.json\"\n"
+                                              "checklist = \"list.toml\"\n");
+  const auto warnings = [&] {
+    return protocols::load_bone_definition(folder / "study.toml").warnings();
+  };
+  test::write_text(folder / "list.toml", "");
+  const std::string absent = "feedback.score score.json: no such file or folder";
+  EXPECT_THAT(warnings(), testing::Contains(HasSubstr(absent)));
+  EXPECT_THAT(warnings(), testing::Not(testing::Contains(HasSubstr("list.toml"))));
+  test::write_text(folder / "score.json", "");
+  EXPECT_THAT(warnings(), testing::Not(testing::Contains(HasSubstr("feedback"))));
+}
+
 TEST(ValidityDefinitionTest, ABoneWithoutTheStructureIsRefused) {
   const test::TemporaryFolder folder;
   test::write_text(

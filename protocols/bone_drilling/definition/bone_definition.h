@@ -122,6 +122,7 @@ struct BoneDefinition : Definition {
   std::string score_file;                      // of a score that the page applies; empty: none
   std::string phases_file;                     // of phases, likewise; empty: none
   std::string checklist_file;                  // likewise; empty: none
+  std::vector<std::string> absent_files;       // keys and files of those four that are not there
   /// Bones by source; procedures take them in turn. There are none if only a text was parsed: a
   /// session file has its bones in it.
   std::vector<std::shared_ptr<const bone::BoneModel>> bones;

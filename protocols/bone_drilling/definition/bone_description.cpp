@@ -120,6 +120,14 @@ void warn_of_hints(const BoneDefinition& d, std::vector<std::string>& warnings) 
   }
 }
 
+/// A page is written only after the session: too late for a file that is not there.
+void warn_of_feedback(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  for (const std::string& file : d.absent_files) {
+    warnings.push_back(
+        fmt::format("{}: no such file or folder; without it no page is written", file));
+  }
+}
+
 /// The cases that a trainee of a group has done at the end who passes every procedure. A session is
 /// of one case.
 std::size_t cases_at_best(const BoneDefinition& d, const std::string& group) {
@@ -171,6 +179,7 @@ std::vector<std::string> BoneDefinition::warnings() const {
   warn_of_vibration(d, warnings);
   warn_of_devices(d, warnings);
   warn_of_hints(d, warnings);
+  warn_of_feedback(d, warnings);
   warn_of_curriculum(d, warnings);
   return warnings;
 }
