@@ -190,6 +190,10 @@ class BoneDrilling final : public Protocol {
 };
 
 void BoneDrilling::replay(const ReplayRequest& request) const {
+  if (!request.phase.empty() && request.phase != record::kDrillingPhase) {
+    throw InputError(
+        fmt::format("--phase is '{}'; allowed: {}", request.phase, record::kDrillingPhase));
+  }
   const BoneReplay replay(request.file);
   DrillingOutputs outputs(request, replay);
   const std::vector<int> all = replay.trials();

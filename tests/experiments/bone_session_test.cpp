@@ -211,6 +211,10 @@ TEST_F(BoneSessionTest, ATrialThatIsNotThereIsNamed) {
       test::run_command("haptrial replay '" + (*folder_ / "S01.h5").string() + "' --trial 7");
   EXPECT_EQ(command.status, 2);
   EXPECT_THAT(command.errors, HasSubstr("--trial is 7; allowed: 1 to 1"));
+  const test::CommandResult phase = test::run_command(
+      "haptrial replay '" + (*folder_ / "S01.h5").string() + "' --phase training");
+  EXPECT_EQ(phase.status, 2);
+  EXPECT_THAT(phase.errors, HasSubstr("--phase is 'training'; allowed: drilling"));
 }
 
 }  // namespace

@@ -142,7 +142,7 @@ void add_replay(CLI::App& app, int& status) {
   sub->add_option("FILE", o.file, "Session file (.h5)")->required();
   sub->add_option("--trial", o.trial,
                   "Number of the trial, from 1 (default: of a drilling all, in a video the first)");
-  sub->add_option("--phase", o.phase, "Phase of the trial: training or test (default: both)");
+  sub->add_option("--phase", o.phase, "Phase of the trial: training or test (default: both; a drilling has one)");
   sub->add_option("--video", o.video, "New video (.mp4); needs ffmpeg");
   sub->add_option("--frames", o.frames, "New folder for pictures (.png)");
   sub->add_option("--sound", o.sound, "New sound file of a drilling (.wav)");
