@@ -563,6 +563,11 @@ TEST(LanguagesTest, ALanguageIsRecorded) {
     return event.kind == "language" && event.text == "ar";
   }));
   EXPECT_THROW(load_experiment(file, "hi"), InputError);
+  const test::CommandResult replay =
+      test::run_command("haptrial replay '" + (folder / "S01.h5").string() +
+                        "' --trial 1 --fps 1 --frames '" + (folder / "frames").string() + "'");
+  EXPECT_EQ(replay.status, 0) << replay.errors;
+  EXPECT_THAT(replay.output, HasSubstr("the participant read them in ar"));
 }
 
 TEST(SessionPagesTest, ReportsTellSessionsOfAParticipantApart) {

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
@@ -69,6 +72,18 @@ class PictureFolder {
   int count_{0};
 };
 
+/// Which languages the participant read, if not that of the definition: a session file has the
+/// words of its definition alone, so pictures show those.
+std::vector<std::string> unshown_languages(const fs::path& file) {
+  std::vector<std::string> languages;
+  for (const record::EventRow& event : record::SessionReader(file).events()) {
+    if (event.kind == "language" && std::ranges::find(languages, event.text) == languages.end()) {
+      languages.push_back(event.text);
+    }
+  }
+  return languages;
+}
+
 int replay(const ReplayOptions& options) {
   watch_for_interrupt();
   constexpr int kMostFps = 240;
@@ -124,6 +139,12 @@ int replay(const ReplayOptions& options) {
     pictures->keep();
     lines.push_back("pictures: " + options.frames);
   }
+  if (const auto languages = unshown_languages(options.file);
+      request.pictures && !languages.empty()) {
+    lines.push_back(
+        fmt::format("words: as the definition has them; the participant read them in {}",
+                    fmt::join(languages, ", ")));
+  }
   for (const std::string& line : lines) {
     fmt::print("{}\n", line);
   }
@@ -142,7 +163,8 @@ void add_replay(CLI::App& app, int& status) {
   sub->add_option("FILE", o.file, "Session file (.h5)")->required();
   sub->add_option("--trial", o.trial,
                   "Number of the trial, from 1 (default: of a drilling all, in a video the first)");
-  sub->add_option("--phase", o.phase, "Phase of the trial: training or test (default: both; a drilling has one)");
+  sub->add_option("--phase", o.phase,
+                  "Phase of the trial: training or test (default: both; a drilling has one)");
   sub->add_option("--video", o.video, "New video (.mp4); needs ffmpeg");
   sub->add_option("--frames", o.frames, "New folder for pictures (.png)");
   sub->add_option("--sound", o.sound, "New sound file of a drilling (.wav)");
