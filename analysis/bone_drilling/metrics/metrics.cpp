@@ -377,6 +377,11 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
   if (several) {
     row.add("session_number").add("session_name");
   }
+  const bool cases = std::ranges::any_of(
+      procedures, [](const ProcedureSummary& p) { return !p.case_name.empty(); });
+  if (cases) {
+    row.add("case");
+  }
   for (const Definition& definition : kDefinitions) {
     row.add(std::string_view(column_name(definition)));
   }
@@ -398,6 +403,9 @@ std::string metrics_csv(std::span<const ProcedureSummary> procedures) {
     row.add(p.simulated ? 1 : 0).add(p.completed ? 1 : 0);
     if (several) {
       row.add(p.session_number).add(std::string_view(p.session_name));
+    }
+    if (cases) {
+      row.add(std::string_view(p.case_name));
     }
     for (const std::optional<double>& value : p.values) {
       value ? row.add(*value) : row.add_missing();

@@ -98,7 +98,8 @@ std::optional<RegionLabelTest> region_label_test(std::span<const ProcedureSummar
                                                  std::span<const std::string> expert_groups);
 
 /// A tidy table (RFC 4180 with LF): session, participant, group, procedure, simulated, completed,
-/// and where participants come several times session_number and session_name;
+/// and where participants come several times session_number and session_name, of a curriculum the
+/// case;
 /// then a column for each metric, named NAME_UNIT, for each of figures_of() and, where procedures
 /// are divided, the time in each phase and the number of changes; empty where it is not defined.
 std::string metrics_csv(std::span<const ProcedureSummary> procedures);

@@ -76,6 +76,7 @@ class Loader {
     procedure.participant = file_.info().subject;
     procedure.session_number = static_cast<int>(file_.info().session);
     procedure.session_name = setup_.session_name;
+    procedure.case_name = setup_.of_cases ? passes.back().pass.condition : "";
     procedure.group = setup_.group;
     procedure.number = trial;
     procedure.simulated = file_.info().simulated;

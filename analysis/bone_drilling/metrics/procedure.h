@@ -51,6 +51,7 @@ struct ProcedureSetup {
   std::vector<ProcedureTool> tools;  // in the definition's order
   /// The plans on a bone; empty: there are none.
   std::function<ProcedurePlans(const std::shared_ptr<const bone::BoneModel>&)> plans;
+  bool of_cases{false};  // conditions are the cases of a curriculum
 };
 
 /// One tick of a drilling; the tip in the scene's frame W.
@@ -115,6 +116,7 @@ struct ProcedureIdentity {
   std::string group;
   int session_number{1};       // of the participant's sessions, from 1
   std::string session_name{};  // in the definition's words; empty: it has none
+  std::string case_name{};     // of a curriculum; empty: there is none
   int number{1};               // of the session's procedures: the trial, from 1
   bool simulated{true};        // the participant is a virtual subject
   bool completed{true};        // its last pass came to its end

@@ -88,6 +88,22 @@ Sessions sessions_of(const ValidityStudy& study) {
   return all;
 }
 
+/// Empty unless procedures are of several cases of a curriculum.
+std::vector<std::string> remarks_on_cases(const std::vector<ProcedureSummary>& procedures) {
+  std::set<std::string> cases;
+  for (const ProcedureSummary& p : procedures) {
+    cases.insert(p.case_name);
+  }
+  if (cases.size() < 2) {
+    return {};
+  }
+  return {
+      fmt::format("Means are over the procedures of all cases: {}. Cases differ in their bones; "
+                  "metrics.csv has "
+                  "the case of each procedure.",
+                  fmt::join(cases, ", "))};
+}
+
 std::string structure_of(const ValidityStudy& study,
                          const std::vector<ProcedureSummary>& procedures) {
   if (!study.structure.empty()) {
@@ -125,6 +141,7 @@ ValidityResult analyze(const ValidityStudy& study) {
   result.hints = std::move(sessions.hints);
   result.crossings = std::move(sessions.crossings);
   result.remarks = remarks_on_files(sessions.files);
+  std::ranges::move(remarks_on_cases(result.procedures), std::back_inserter(result.remarks));
   result.hint_effects = hint_effects(result.hints, result.procedures);
   if (result.procedures.empty()) {
     throw InputError("no session holds a drilling, so there is nothing to analyse");

@@ -46,6 +46,7 @@ drilling::ProcedureSetup procedure_setup(const record::SessionReader& session) {
 drilling::ProcedureSetup procedure_setup(const protocols::BoneDefinition& definition) {
   drilling::ProcedureSetup setup;
   setup.scale = definition.drilling.scale;
+  setup.of_cases = definition.curriculum.has_value();
   setup.handle = definition.drilling.handle;
   setup.pose_WB = [placement = definition.placement](const geometry::VoxelGrid& grid) {
     return pose_of(placement, grid);

@@ -130,6 +130,16 @@ TEST_F(MetricsTest, TheTableReadsBack) {
   EXPECT_TRUE(table.has("stroke_rate_per_s"));
 }
 
+TEST_F(MetricsTest, TheTableHasTheCasesOfACurriculum) {
+  std::vector<ProcedureSummary> all{summary("A", "x", 28), summary("B", "y", 12)};
+  EXPECT_FALSE(CsvTable::parse(metrics_csv(all), "metrics.csv").has("case"));
+  all[1].case_name = "low tegmen";
+  const CsvTable table = CsvTable::parse(metrics_csv(all), "metrics.csv");
+  EXPECT_EQ(table.text(0, table.column("case")), "");
+  EXPECT_EQ(table.text(1, table.column("case")), "low tegmen");
+  EXPECT_EQ(table.numbers(table.column("time_s"))[0], *all[0].value("time"));
+}
+
 TEST_F(MetricsTest, NamesAreUnique) {
   std::set<std::string> names;
   for (const MetricKind& kind : metric_kinds()) {
