@@ -113,6 +113,12 @@ TEST(TraineePagesTest, AScoreOfARatedStudyStandsOnTheNextTraineesPage) {
   EXPECT_THAT(test::read_text(out / "S01.html"),
               HasSubstr("it was learned with another drilling.time_limit (3 s; here 4 s)"));
 
+  const std::string labels = (study / "phases.csv").string();
+  test::write_text(labels, "session,procedure,phase,start_s,end_s\nS01.h5,1,cortex,0,3\n");
+  const auto own = run_command("haptrial bone phases " + study.string() + " --labels " + labels);
+  EXPECT_EQ(own.status, 2);
+  EXPECT_THAT(own.errors, HasSubstr("analyze writes this file anew, without corrections"));
+
   fs::copy_file(out / "S01.h5", study / "S06.h5");  // does not belong to the study
   const std::string divide = "haptrial bone phases " + study.string() + " --number 2";
   for (const std::string& command : {learn + " --overwrite", divide}) {

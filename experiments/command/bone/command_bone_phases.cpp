@@ -2,6 +2,8 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <system_error>
 
 #include "analysis/bone_drilling/phases/phase_file.h"
 #include "core/base/counted.h"
@@ -41,6 +43,14 @@ int bone_phases(const BonePhasesOptions& options) {
   }
   if (options.number && !options.labels.empty()) {
     throw InputError("--number finds phases without labels; leave it or --labels out");
+  }
+  // analyze would overwrite what somebody corrected there.
+  std::error_code unknown;
+  if (std::filesystem::equivalent(options.labels,
+                                  std::filesystem::path(options.study) / "phases.csv", unknown)) {
+    throw InputError(options.labels +
+                     ": haptrial analyze writes this file anew, without corrections; give a copy "
+                     "under another name");
   }
   const std::filesystem::path out = options.out.empty()
                                         ? std::filesystem::path(options.study) / kPhasesFile
