@@ -118,19 +118,25 @@ Curriculum with_titles(Curriculum curriculum) {
   return curriculum;
 }
 
-std::string curriculum_section(const Curriculum& stated, const CurriculumStanding& standing) {
+std::string curriculum_section(const Curriculum& stated, const CurriculumStanding& standing,
+                               bool has_session_left) {
   const Curriculum curriculum = with_titles(stated);
+  CurriculumStanding shown = standing;
+  if (!has_session_left) {
+    shown.next.reset();
+  }
   Rows rows;
   for (std::size_t place = 0; place < curriculum.cases.size(); ++place) {
     const CurriculumCase& own = curriculum.cases[place];
     rows.push_back(
-        {own.name, state_of(standing, place), asked_of(own), last_of(own, standing.cases[place])});
+        {own.name, state_of(shown, place), asked_of(own), last_of(own, standing.cases[place])});
   }
   const std::string why = why_next(curriculum, standing);
-  const std::string next = standing.next
-                               ? fmt::format("Next: {}{}.", curriculum.cases[*standing.next].name,
-                                             why.empty() ? "" : " (" + why + ")")
-                               : "Every case is done.";
+  const std::string name = standing.next ? curriculum.cases[*standing.next].name : "";
+  const std::string next =
+      !standing.next      ? "Every case is done."
+      : !has_session_left ? fmt::format("No session is left; {} is not done.", name)
+                          : fmt::format("Next: {}{}.", name, why.empty() ? "" : " (" + why + ")");
   return heading("Curriculum") + paragraph(next) +
          html_table({"case", "state", "to pass", "last procedure"}, rows);
 }

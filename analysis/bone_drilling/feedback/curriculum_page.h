@@ -12,8 +12,9 @@ bone::Curriculum with_titles(bone::Curriculum curriculum);
 
 /// How a trainee stands in a curriculum, as a section of a page: a row for each case with what its
 /// criteria ask for and what the last procedure reached. HTML.
+/// @param has_session_left  in which the next case would come
 std::string curriculum_section(const bone::Curriculum& curriculum,
-                               const bone::CurriculumStanding& standing);
+                               const bone::CurriculumStanding& standing, bool has_session_left);
 
 /// A trainee of a class.
 struct ClassTrainee {

@@ -292,7 +292,9 @@ std::string Pages::curriculum_section() const {
     own.push_back(file);
   }
   const auto attempts = case_attempts(*curriculum, own, score_ ? &*score_ : nullptr);
-  return drilling::curriculum_section(*curriculum, standing(*curriculum, attempts));
+  const auto sessions = static_cast<std::uint64_t>(last.definition.sessions());
+  return drilling::curriculum_section(*curriculum, standing(*curriculum, attempts),
+                                      files.empty() || files.rbegin()->first < sessions);
 }
 
 void Pages::write(const fs::path& file, const std::string& html) {
