@@ -209,7 +209,8 @@ void add_combined(Validity& v, std::span<const ProcedureSummary> procedures) {
       predictors(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(m)) = columns[m][i];
     }
   }
-  c.fit = cross_validated_ridge(response, predictors, who);
+  c.fit = c.rows.empty() ? Defined<CrossValidated>(Undefined{"nothing is rated"})
+                         : cross_validated_ridge(response, predictors, who);
   if (c.fit) {
     c.roc = roc_of(v, c.rows, c.fit->predicted);
     c.resubstitution_roc = roc_of(v, c.rows, c.fit->resubstituted);

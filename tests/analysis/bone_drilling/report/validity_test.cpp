@@ -237,7 +237,8 @@ TEST(ValidityTest, WorksWithoutRatingsAndWithHoles) {
   EXPECT_EQ(v.rated, 0u);
   EXPECT_EQ(v.metrics[2].defined, 29u);
   EXPECT_TRUE(v.metrics[2].contrast.mixed_p);
-  EXPECT_FALSE(v.combined.fit);
+  ASSERT_FALSE(v.combined.fit);
+  EXPECT_EQ(v.combined.fit.because(), "nothing is rated") << "there are people enough";
   const std::string report = to_markdown(validity_report(result_of(study), {}));
   EXPECT_THAT(report, HasSubstr("Nothing is rated yet"));
 }
