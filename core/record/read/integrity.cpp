@@ -176,8 +176,14 @@ void check_own(const SessionReader& reader, const TableDescription& table, Integ
   if (table.of() == RowsOf::kEachTick) {
     check_each_tick(reader, table, order, result);
   } else if (table.of() == RowsOf::kTick) {
+    std::uint64_t before = 0;
     for (const std::int64_t value : reader.integers(table, "sequence", 0, reader.count(table))) {
       const auto sequence = static_cast<std::uint64_t>(value);
+      if (sequence < before) {
+        order.note("sequence number " + number(sequence) + " of /" + table.name() + " follows " +
+                   number(before));
+      }
+      before = sequence;
       if (sequence < result.first_sequence || sequence > result.last_sequence) {
         order.note("/" + table.name() + " has a row for tick " + number(sequence) +
                    ", which is missing");

@@ -37,8 +37,9 @@ class Plan {
     find_passes();
   }
 
+  /// The next run takes the numbers behind the last tick, so that no row of one may stay there.
   bool keeps(std::uint64_t sequence) const {
-    return sequence <= last_ && (!each_tick_ || ticks_.holds(sequence, sequence));
+    return sequence < end_ && (!each_tick_ || ticks_.holds(sequence, sequence));
   }
   const std::vector<PassRow>& passes() const { return passes_; }
   std::uint64_t dropped_passes() const { return dropped_passes_; }
@@ -72,7 +73,11 @@ class Plan {
         ticks_ = ticks_.shared_with(ticks_of(table));
       }
     }
-    if (!each_tick_ || ticks_.ranges().empty()) {
+    if (ticks_.ranges().empty()) {
+      return;
+    }
+    if (!each_tick_) {
+      end_ = ticks_.ranges().back().last + 1;
       return;
     }
     std::uint64_t whole = ticks_.ranges().front().first;
@@ -81,7 +86,7 @@ class Plan {
         whole = std::max(whole, pass.last_sample);
       }
     }
-    last_ = ticks_.end_of_range(whole);
+    end_ = ticks_.end_of_range(whole) + 1;
   }
 
   std::map<std::int32_t, SeenPass> seen_passes() const {
@@ -148,7 +153,7 @@ class Plan {
   const RecoveredRows& rows_;
   bool each_tick_;
   TickRanges ticks_;
-  std::uint64_t last_{~std::uint64_t{0}};
+  std::uint64_t end_{0};  // behind the last tick that is kept
   std::vector<PassRow> passes_;
   std::uint64_t dropped_passes_{0};
 };

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/record/hdf5/session_writer.h"
+#include "core/record/rows/device_rows.h"
 #include "tests/core/record/session_fixture.h"
 
 namespace haptrial::record {
@@ -167,6 +168,32 @@ TEST(IntegrityTest, DroppedRecordsAndAnUnfinishedSessionAreFound) {
   EXPECT_THAT(session.check().problems, ElementsAre("4 lost records"));
   session.summary.clear();
   EXPECT_THAT(session.check().problems, ElementsAre(HasSubstr("the session is unfinished")));
+}
+
+/// A session of 300 ticks with two devices. @param tick  of the last row of /devices
+std::vector<std::string> problems_with_last_row_of(std::uint64_t tick) {
+  const TemporaryFolder folder;
+  SessionWriter writer(folder / "a.h5", test::example_info(), {&table_of<DeviceRow>()});
+  std::vector<Sample> samples(300);
+  std::vector<DeviceRow> devices(300);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i].sequence = devices[i].sequence = i;
+    samples[i].time_ns = static_cast<std::int64_t>(i) * 1000000;
+    samples[i].pass = -1;
+  }
+  devices.back().sequence = tick;
+  writer.add(std::span<const DeviceRow>(devices));
+  writer.append(samples);
+  writer.set_timing({}, {300, 0, 0});
+  writer.close();
+  return check_session(SessionReader(folder / "a.h5")).problems;
+}
+
+TEST(IntegrityTest, TicksOfASecondDeviceNeverGoBack) {
+  EXPECT_THAT(problems_with_last_row_of(299), ElementsAre());
+  EXPECT_THAT(problems_with_last_row_of(298), ElementsAre());  // one device more
+  EXPECT_THAT(problems_with_last_row_of(297),
+              ElementsAre(HasSubstr("sequence number 297 of /devices follows 298")));
 }
 
 }  // namespace

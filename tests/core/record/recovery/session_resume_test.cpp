@@ -18,6 +18,7 @@
 #include "core/record/recovery/recover.h"
 #include "core/record/rows/answer_rows.h"
 #include "core/record/rows/common_tables.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/table/schema.h"
 #include "tests/core/record/session_fixture.h"
 
@@ -215,6 +216,56 @@ TEST(SessionResumeTest, AnswersOfAPassThatLeftNoSamplesAreDropped) {
   }
   EXPECT_GE(found.responses.size(), 1u);
   EXPECT_TRUE(fs::exists(folder / "a.h5.partial.damaged"));
+}
+
+/// The same ticks without a pass.
+std::vector<Sample> ticks_between_passes(std::uint64_t from, std::uint64_t to) {
+  std::vector<Sample> samples = ticks(from, to);
+  for (Sample& sample : samples) {
+    sample.pass = -1;
+  }
+  return samples;
+}
+
+/// A chunk of /devices may be full before that of /samples: a kill loses ticks of which it has the
+/// second device. Their numbers are those of the next run's ticks.
+TEST(SessionResumeTest, RowsOfTicksThatAKillLostAreDropped) {
+  for (const std::uint64_t kept : {std::uint64_t{0}, std::uint64_t{2000}}) {
+    const TemporaryFolder folder;
+    const TableList tables{&table_of<DeviceRow>()};
+    {
+      SessionWriter writer(folder / "a.h5", live_info(), tables);
+      std::vector<DeviceRow> second(kept + 300);
+      for (std::size_t i = 0; i < second.size(); ++i) {
+        second[i].sequence = i;
+      }
+      writer.add(std::span<const DeviceRow>(second));
+      writer.append(ticks_between_passes(0, kept));
+    }
+    Resumed found;
+    {
+      SessionWriter writer = SessionWriter::resume(folder / "a.h5", found);
+      EXPECT_THAT(found.repaired, HasSubstr("/devices refers to ticks that are missing"));
+      EXPECT_EQ(found.next_sequence, kept);
+      std::vector<DeviceRow> second(500);
+      for (std::size_t i = 0; i < second.size(); ++i) {
+        second[i].sequence = kept + i;
+        second[i].buttons = 1;
+      }
+      writer.add(std::span<const DeviceRow>(second));
+      writer.append(ticks_between_passes(kept, kept + 500));
+      writer.set_timing({}, {500, 0, 0});
+      writer.close();
+    }
+    const SessionReader reader(folder / "a.h5");
+    const std::vector<DeviceRow> rows = reader.rows<DeviceRow>();
+    ASSERT_EQ(rows.size(), kept + 500);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      ASSERT_EQ(rows[i].sequence, i);
+      ASSERT_EQ(rows[i].buttons, i < kept ? 0 : 1) << i;
+    }
+    EXPECT_THAT(check_session(reader).problems, ElementsAre());
+  }
 }
 
 // The first pass of a drilling without blood and heat leaves such a row in /field.
