@@ -22,12 +22,13 @@ TrialPresenter::TrialPresenter(const Parts& parts)
 
 Outcome TrialPresenter::present(const PlannedTrial& trial) {
   const auto begun = std::chrono::steady_clock::now();
-  p_.trials.prepare(trial, p_.record);
+  p_.controller.requests().skip = false;
+  p_.trials.prepare(trial, p_.record);  // may take seconds, in which somebody may ask for something
   p_.notices.note(p_.trials.take_warnings());
   p_.prepared();
   responses_.clear();
   AttemptResult last;
-  while (!p_.controller.requests().abort && last.again) {
+  while (!p_.controller.requests().abort && !p_.last_answer.goes_back() && last.again) {
     last = present_once(trial);
   }
   const bool completed = last.end == TrialEnd::kCompleted;
@@ -42,7 +43,6 @@ TrialPresenter::AttemptResult TrialPresenter::present_once(const PlannedTrial& t
   PendingRequests& requests = p_.controller.requests();
   const int attempt = p_.last_answer.begin_attempt(trial);
   const bool anew = std::exchange(requests.repeat, false);
-  requests.skip = false;
   responses_.clear();
   p_.trials.begin_attempt(trial, anew);
   show();
@@ -96,13 +96,11 @@ bool TrialPresenter::run_passes(const PlannedTrial& trial, int attempt) {
   bool done = true;
   const std::span<const record::Phase> phases = p_.trials.phases();
   for (std::size_t i = 0; i < phases.size(); ++i) {
-    if (i > 0) {
-      p_.pacing.pause_where_asked();
-      const PendingRequests& requests = p_.controller.requests();
-      if (requests.repeat || requests.skip || requests.abort ||
-          p_.last_answer.next() != LastAnswer::Next::kAsPlanned) {
-        return false;
-      }
+    p_.pacing.pause_where_asked();
+    const PendingRequests& requests = p_.controller.requests();
+    if (requests.repeat || requests.skip || requests.abort ||
+        p_.last_answer.next() != LastAnswer::Next::kAsPlanned) {
+      return false;
     }
     const bool completed = run_pass(trial, phases[i], attempt);
     if (!completed &&

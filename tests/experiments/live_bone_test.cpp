@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "protocols/bone_drilling/bone_replay.h"
+#include "tests/experiments/console_person.h"
 #include "tests/experiments/live_command.h"
+#include "tests/experiments/shipped.h"
 #include "tests/experiments/small_drilling.h"
 #include "tests/support/temporary_folder.h"
 
@@ -95,6 +98,29 @@ TEST(LiveBoneTest, AfterAKillTheSessionGoesOnWithTheBoneAsItStood) {
   const auto tool = reader.rows<record::ToolRow>();
   EXPECT_EQ(std::count_if(tool.begin(), tool.end(), [](const auto& row) { return row.active; }),
             20000);
+}
+
+/// A bone takes seconds to prepare. Nothing is presented after them if the experimenter did not
+/// want it any more.
+TEST(LiveBoneTest, NoProcedureFollowsAPreparationThatWasAborted) {
+  for (const std::string request : {"abort", "skip"}) {
+    const test::TemporaryFolder folder;
+    test::write_text(folder / "study.toml",
+                     test::drilling_with({{"time_limit", "time_limit = 4.0"}}));
+    test::LiveCommand session(run_arguments(folder, "--trials 1 --console"));
+    test::ConsolePerson person(session.line_after("console: "));
+    ASSERT_TRUE(person.sees("instructions")) << session.errors();
+    ASSERT_TRUE(person.ask("start"));
+    ASSERT_TRUE(person.sees("preparing")) << session.errors();
+    ASSERT_TRUE(person.ask(request));
+    const test::CommandResult ended = session.wait();
+    ASSERT_EQ(ended.status, 0) << ended.errors;
+    const fs::path file = folder / "out" / (request == "abort" ? "S01.h5.partial" : "S01.h5");
+    ASSERT_TRUE(fs::exists(file)) << ended.output;
+    for (const record::PassRow& pass : record::SessionReader(file).passes()) {
+      EXPECT_EQ(pass.status, record::PassStatus::kAborted) << request;
+    }
+  }
 }
 
 /// A dry run of hours, in a pass, in which dust is followed: nothing of it stays.
