@@ -17,7 +17,9 @@ Eigen::Vector3d rotation_near(const Eigen::Quaterniond& orientation,
   } else if (before.norm() > kNoAxis) {
     axis = before.normalized();
   }
-  const double turns = std::round((before.dot(axis) - angle) / kTurn);
+  const double turned = before.dot(axis);
+  // A place that is no number would make every later one none.
+  const double turns = std::isfinite(turned) ? std::round((turned - angle) / kTurn) : 0.0;
   return (angle + kTurn * turns) * axis;
 }
 

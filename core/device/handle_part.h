@@ -17,7 +17,8 @@ namespace haptrial::device {
 // opening along x.
 
 /// The rotation vector of an orientation, of all that differ by whole turns the one next to
-/// `before` [rad], so that a handle can be turned on and on.
+/// `before` [rad], so that a handle can be turned on and on. Without a finite `before`, the
+/// shortest.
 Eigen::Vector3d rotation_near(const Eigen::Quaterniond& orientation,
                               const Eigen::Vector3d& before) noexcept;
 

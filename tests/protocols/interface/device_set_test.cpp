@@ -93,6 +93,30 @@ TEST(DeviceSetTest, AFailedReadEndsEveryForceInTheSameTick) {
   EXPECT_EQ(handle.given.grip, 0.0);
 }
 
+TEST(DeviceSetTest, ARotationGoesOnAfterAnOrientationThatIsNoNumber) {
+  TurningHandle handle(1e-3 / (kFingers * kFingers), 1.0);
+  DeviceSet set = set_of(handle);
+  const Law push = [](const auto&) { return Vector3d(0.0, 0.1, 0.0); };
+  for (int i = 0; i < 300; ++i) {
+    tick(set, push, {});
+  }
+  handle.on_read = [](DeviceReading& reading) {
+    reading.orientation.coeffs().setConstant(std::numeric_limits<double>::quiet_NaN());
+  };
+  tick(set, push, {});
+  EXPECT_EQ(set.fault(), device::Fault::kOrientationNotFinite);
+  EXPECT_TRUE(handle.given.torque.isZero(0.0));
+  handle.on_read = nullptr;
+  tick(set, push, {});
+  set.reset();
+  set.engage();
+  for (int i = 0; i < 300; ++i) {
+    tick(set, push, {});
+  }
+  EXPECT_EQ(set.fault(), device::Fault::kNone);
+  EXPECT_NEAR(handle.given.torque.y(), 0.1 * kFingers, 1e-3 * kFingers);
+}
+
 TEST(DeviceSetTest, ATickWithPartsDoesNotAllocate) {
   TurningHandle handle(1e-3 / (kFingers * kFingers), 1.0);
   DeviceSet set = set_of(handle);
