@@ -105,10 +105,8 @@ const Schema<ForceDimensionParameters>& force_dimension_schema() {
   static const auto schema =
       Schema<P>()
           .integer("index", &P::index, 0, 3, "Number of the device if several are connected")
-          .required()
           .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
                   "Force at which the driver saturates; at most what the model gives is used")
-          .required()
           .number("max_torque", &P::max_torque, {0.0, 10.0, true}, "N·m",
                   "Torque at which the driver saturates, of a wrist with motors; at most what the "
                   "model gives")
@@ -117,29 +115,22 @@ const Schema<ForceDimensionParameters>& force_dimension_schema() {
                   "what the model gives")
           .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
                   "Radius of the device's workspace")
-          .required()
           .number("effector_mass", &P::effector_mass, {0.0, 2.0}, "kg",
                   "Mass mounted on the handle, which gravity compensation carries, too")
-          .required()
           .flag("gravity_compensation", &P::gravity_compensation,
                 "Whether the device carries its own weight")
-          .required()
           .number("velocity_window", &P::velocity_window, {0.001, 0.1}, "s",
                   "Time over which velocity is estimated")
-          .required()
           .number("watchdog", &P::watchdog, {0.001, kLongestWatchdog}, "s",
                   "Time without a command after which the motors are switched off")
-          .required()
           .integer("velocity_threshold", &P::velocity_threshold, 0, 1'000'000,
                    "Velocity at which the device brakes, in its own units")
           .otherwise("the device's own")
           .number("time_guard", &P::time_guard, {0.0, 0.01}, "s",
                   "Shortest time between two readings; a faster one gives the last position; 0: "
                   "off")
-          .required()
           .integer("stop_button", &P::stop_button, -1, 31,
-                   "Button of the handle for emergency stops; -1: none")
-          .required();
+                   "Button of the handle for emergency stops; -1: none");
   return schema;
 }
 

@@ -53,11 +53,9 @@ const Schema<HaplyParameters>& haply_schema() {
           .otherwise("the first one, or none")
           .number("max_force", &P::max_force, {0.0, 20.0, true}, "N",
                   "Force at which the driver saturates; at most what the device's data sheet gives")
-          .required()
           .number("workspace_radius", &P::workspace_radius, {0.0, 1.0, true}, "m",
                   "Radius of the device's workspace; at most 0.1 m is used, and 0.04 m with a "
                   "Minverse")
-          .required()
           .vector("origin", &P::origin, {-1.0, 1.0}, "m",
                   "Middle of the workspace from the middle of the device's mounting face, in the "
                   "device's axes: to the right, away from the user, up")
@@ -65,10 +63,8 @@ const Schema<HaplyParameters>& haply_schema() {
           .number("patience", &P::patience, {0.002, 1.0}, "s",
                   "Silence between the loop and the Inverse Service after which the force is "
                   "switched off")
-          .required()
           .integer("stop_button", &P::stop_button, -1, 2,
-                   "Button of the VerseGrip for emergency stops, 0 to 2 for a, b and c; -1: none")
-          .required();
+                   "Button of the VerseGrip for emergency stops, 0 to 2 for a, b and c; -1: none");
   return schema;
 }
 

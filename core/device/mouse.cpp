@@ -15,19 +15,14 @@ const Schema<MouseParameters>& mouse_schema() {
       Schema<P>()
           .number("pointer_speed", &P::pointer_speed, {0.0, 10.0, true}, "m/s",
                   "Greatest speed at which the simulated mass follows the pointer")
-          .required()
           .number("max_press", &P::max_press, {0.0, 100.0, true}, "N",
                   "Greatest force of a press of the left button")
-          .required()
           .number("first_press", &P::first_press, {0.0, 100.0}, "N",
                   "Force of a press when the left button goes down")
-          .required()
           .number("press_step", &P::press_step, {0.0, 100.0}, "N",
                   "Change of a press for each step of the mouse wheel")
-          .required()
           .integer("stop_button", &P::stop_button, -1, 31,
-                   "Button of the mouse for emergency stops; -1: none")
-          .required();
+                   "Button of the mouse for emergency stops; -1: none");
   return schema;
 }
 

@@ -124,23 +124,19 @@ const Schema<OpenHapticsParameters>& open_haptics_schema() {
   static const auto schema =
       Schema<P>()
           .text("name", &P::name, "Name of the device, as the vendor's set-up program gave it")
-          .required()
+          .otherwise("the default device")
           .number("max_force", &P::max_force, {0.0, 100.0, true}, "N",
                   "Force at which the driver saturates; at most the device's own limit is used")
-          .required()
           .number("max_torque", &P::max_torque, {0.0, 10.0, true}, "N·m",
                   "Torque at which the driver saturates, of a device with six motors; at most the "
                   "device's own limit is used")
           .number("workspace_radius", &P::workspace_radius, {0.0, 2.0, true}, "m",
                   "Radius of the device's workspace")
-          .required()
           .number("patience", &P::patience, {0.002, 1.0}, "s",
                   "Silence between the loop and the vendor's scheduler after which the force is "
                   "switched off")
-          .required()
           .integer("stop_button", &P::stop_button, -1, 31,
-                   "Button of the handle for emergency stops; -1: none")
-          .required();
+                   "Button of the handle for emergency stops; -1: none");
   return schema;
 }
 

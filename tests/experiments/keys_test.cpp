@@ -70,6 +70,64 @@ TEST(KeysTest, AWordFindsKeysByNameAndByWhatTheyAre) {
   EXPECT_LT(std::count(found.output.begin(), found.output.end(), '\n'), 100);
 }
 
+/// Defaults that docs/devices.md states, by the path of their keys; empty for none.
+std::map<std::string, std::string> defaults_of_devices_page() {
+  const std::map<std::string, std::vector<std::string>> tables{
+      {"## Force Dimension", {"force_dimension"}},
+      {"## OpenHaptics", {"open_haptics"}},
+      {"## Haply", {"haply"}},
+      {"## Boards on a serial line", {"hapi", "paddle"}},
+      {"### hAPI", {"hapi"}},
+      {"### Paddles", {"paddle"}},
+      {"## Mouse", {"mouse"}},
+      {"## Game controller", {"gamepad"}},
+      {"## Pedal", {"pedal"}}};
+  std::istringstream page(file_text(HAPTRIAL_SOURCE_DIR "/docs/devices.md"));
+  std::vector<std::string> current;
+  std::map<std::string, std::string> defaults;
+  for (std::string line; std::getline(page, line);) {
+    if (line.starts_with("#")) {
+      current = tables.contains(line) ? tables.at(line) : std::vector<std::string>{};
+    }
+    const std::size_t end = line.starts_with("| `") ? line.find('|', 1) : std::string::npos;
+    if (end == std::string::npos) {
+      continue;
+    }
+    std::string value = line.substr(end + 1, line.find('|', end + 1) - end - 1);
+    value.erase(0, value.find_first_not_of(' '));
+    for (std::size_t begin = line.find('`'); begin < end; begin = line.find('`', begin + 1)) {
+      const std::size_t close = line.find('`', begin + 1);
+      for (const std::string& table : current) {
+        defaults[table + "." + line.substr(begin + 1, close - begin - 1)] = value;
+      }
+      begin = close;
+    }
+  }
+  return defaults;
+}
+
+TEST(KeysTest, AKeyOfADeviceMayBeLeftOutWhereItsPageStatesADefault) {
+  const std::map<std::string, std::string> stated = defaults_of_devices_page();
+  std::size_t found = 0;
+  for (const KeySection& section : every_section()) {
+    for (const KnownKey& key : section.keys) {
+      const auto at = stated.find(key.path());
+      if (at == stated.end()) {
+        continue;
+      }
+      ++found;
+      EXPECT_EQ(key.optional, !at->second.empty()) << key.path();
+      const bool one_number = at->second.find(", ") == std::string::npos &&
+                              at->second.find_first_of("0123456789-") == 0;
+      if (one_number) {
+        EXPECT_EQ(std::stod(at->second), std::stod(key.otherwise)) << key.path();
+      }
+    }
+  }
+  EXPECT_EQ(found, stated.size());
+  EXPECT_GT(found, 50u);
+}
+
 std::vector<std::string> parts_of(const std::string& path) {
   std::istringstream in(path);
   std::vector<std::string> parts;
