@@ -202,6 +202,7 @@ void draw(const char* file) {
   render::BoneStyle style;
   style.dust = {0.98, 0.96, 0.90};
   style.hard_bone = {0.74, 0.55, 0.42};
+  style.background_visibility = false;
   std::vector<bone::Structure> structures(2);
   structures[1].colour = {0.74, 0.55, 0.42};
   render::BoneScene scene(context.gl(), style, structures, nullptr);

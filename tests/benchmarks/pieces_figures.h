@@ -45,6 +45,7 @@ class PiecesFigures {
       : world_(model), context_(2 * kWidth, 2 * kHeight) {
     render::BoneStyle style;
     style.background = {1.0, 1.0, 1.0};
+    style.background_visibility = false;
     scene_ = std::make_unique<render::BoneScene>(context_.gl(), style, model.structures, nullptr);
     for (int k = 0; k < model.grid.size[2]; ++k) {
       for (int j = 0; j < model.grid.size[1]; ++j) {

@@ -62,12 +62,15 @@ class BoneObject::PartOfPicture {
   Eigen::Array2d high_;
 };
 
-BoneObject::BoneObject(const Gl& gl, std::shared_ptr<const bone::StructureDepths> depths,
+BoneObject::BoneObject(const Gl& gl, std::uint32_t id,
+                       std::shared_ptr<const bone::StructureDepths> depths,
                        std::shared_ptr<bone::Surface> surface)
     : gl_(gl),
+      id_(id),
       surface_(surface ? std::move(surface) : std::make_shared<bone::Surface>(std::move(depths))),
       vertices_(gl, sizeof(GpuVertex)),
       complete_(gl, sizeof(bone::SurfaceTriangle)),
+      chosen_(gl, sizeof(bone::SurfaceTriangle)),
       part_(gl, sizeof(bone::SurfaceTriangle)) {
   gl_.gen_vertex_arrays(1, &array_);
   gl_.bind_vertex_array(array_);
@@ -85,10 +88,60 @@ BoneObject::BoneObject(const Gl& gl, std::shared_ptr<const bone::StructureDepths
 
 BoneObject::~BoneObject() { gl_.delete_vertex_arrays(1, &array_); }
 
-std::size_t BoneObject::follow(const bone::BoneVolume& volume, const BonePalette& palette) {
+std::size_t BoneObject::follow(const bone::BoneVolume& volume, const BonePalette& palette,
+                               const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker) {
   surface_->update(volume);
   blocks_.follow(*surface_, volume.grid());
+  if (surface_->rebuilt()) {
+    valid_ = false;
+    waiting_ = false;
+  }
+  if (waiting_) {
+    since_.insert(since_.end(), surface_->changed_quads().begin(), surface_->changed_quads().end());
+  } else if (valid_) {
+    for (const std::int32_t quad : surface_->changed_quads()) {
+      visible_.refresh(*surface_, quad, eyes_);
+    }
+  }
+  look(eyes, worker);
   return send(palette);
+}
+
+/// The visible array is begun anew when the eyes have come to rest.
+void BoneObject::look(const std::vector<Eigen::Vector3d>& eyes, VisibilityWorker* worker) {
+  rested_ = eyes == eyes_;
+  if (!rested_) {
+    eyes_ = eyes;
+    valid_ = false;
+    waiting_ = false;
+    return;
+  }
+  if (valid_ || waiting_) {
+    return;
+  }
+  ++generation_;
+  waiting_ = true;
+  since_.clear();
+  if (worker == nullptr) {
+    take({id_, generation_, visible_triangles(surface_->vertices(), surface_->triangles(), eyes_)});
+    return;
+  }
+  worker->submit({id_,
+                  generation_,
+                  facing(surface_->vertices(), eyes_),
+                  {surface_->triangles().begin(), surface_->triangles().end()}});
+}
+
+void BoneObject::take(const VisibilityResult& result) {
+  if (!waiting_ || result.generation != generation_) {
+    return;
+  }
+  visible_.set(*surface_, result.triangles);
+  for (const std::int32_t quad : since_) {
+    visible_.refresh(*surface_, quad, eyes_);
+  }
+  waiting_ = false;
+  valid_ = true;
 }
 
 std::size_t BoneObject::send(const BonePalette& palette) {
@@ -104,39 +157,57 @@ std::size_t BoneObject::send(const BonePalette& palette) {
                                       unsigned_of(surface_->changed_vertices()), write_vertices);
   sent += complete_.update(surface_->triangles().size(), triangles_of(surface_->changed_quads()),
                            copier(surface_->triangles()));
+  if (valid_) {
+    sent += chosen_.update(visible_.size(), visible_.take_changed(),
+                           [&](ItemRange range, std::byte* to) {
+                             for (std::size_t i = 0; i < range.count; ++i) {
+                               copy_triangle(true, range.first + i, to, i);
+                             }
+                           });
+  }
   return sent;
 }
 
-std::size_t BoneObject::draw() const {
-  draw_triangles(complete_, surface_->triangles().size());
-  return surface_->triangles().size();
+std::size_t BoneObject::draw(bool visible) const {
+  const bool chosen = visible && valid_;
+  const std::size_t count = chosen ? visible_.size() : surface_->triangles().size();
+  draw_triangles(chosen ? chosen_ : complete_, count);
+  return count;
 }
 
-std::size_t BoneObject::draw(const PixelBox& part, const Eigen::Matrix4d& to_clip, int width,
-                             int height, bool bent) {
+std::size_t BoneObject::draw(bool visible, const PixelBox& part, const Eigen::Matrix4d& to_clip,
+                             int width, int height, bool bent) {
+  const bool chosen = visible && valid_;
   const PartOfPicture seen(part, to_clip, width, height);
-  slots_.clear();
+  places_.clear();
   for (const BoneBlocks::Block& block : blocks_.blocks()) {
     if (!block.quads.empty()) {
       const PixelBox covers = pixels_of(block.box, to_clip, width, height);
       if (part.intersects(covers)) {
-        gather(block.quads, bent || part.contains(covers) ? nullptr : &seen);
+        gather(chosen, block.quads, bent || part.contains(covers) ? nullptr : &seen);
       }
     }
   }
-  std::sort(slots_.begin(), slots_.end());
-  part_.fill(slots_.size(), [&](ItemRange range, std::byte* to) {
+  std::sort(places_.begin(), places_.end());
+  part_.fill(places_.size(), [&](ItemRange range, std::byte* to) {
     for (std::size_t i = 0; i < range.count; ++i) {
-      const bone::SurfaceTriangle& triangle = surface_->triangles()[slots_[range.first + i]];
-      std::memcpy(to + i * sizeof(triangle), &triangle, sizeof(triangle));
+      copy_triangle(chosen, places_[range.first + i], to, i);
     }
   });
-  draw_triangles(part_, slots_.size());
-  return slots_.size();
+  draw_triangles(part_, places_.size());
+  return places_.size();
+}
+
+/// The triangle at a place of the visible array or of the complete one, as item i.
+void BoneObject::copy_triangle(bool chosen, std::size_t place, std::byte* to, std::size_t i) const {
+  const bone::SurfaceTriangle triangle =
+      chosen ? visible_.triangle(*surface_, place) : surface_->triangles()[place];
+  std::memcpy(to + i * sizeof(triangle), &triangle, sizeof(triangle));
 }
 
 /// @param seen  what does not fall into this part is left out; null: all is taken
-void BoneObject::gather(std::span<const std::int32_t> quads, const PartOfPicture* seen) {
+void BoneObject::gather(bool chosen, std::span<const std::int32_t> quads,
+                        const PartOfPicture* seen) {
   const auto may_show = [&](std::size_t slot) {
     const bone::SurfaceTriangle& triangle = surface_->triangles()[slot];
     unsigned outside = ~0U;
@@ -148,8 +219,9 @@ void BoneObject::gather(std::span<const std::int32_t> quads, const PartOfPicture
   for (const std::int32_t quad : quads) {
     const auto slot = 2 * static_cast<std::size_t>(quad);
     for (std::size_t half = slot; half < slot + 2; ++half) {
-      if (seen == nullptr || may_show(half)) {
-        slots_.push_back(static_cast<std::uint32_t>(half));
+      const std::int32_t place = chosen ? visible_.place_of(half) : static_cast<std::int32_t>(half);
+      if (place >= 0 && (seen == nullptr || may_show(half))) {
+        places_.push_back(static_cast<std::uint32_t>(place));
       }
     }
   }

@@ -29,7 +29,11 @@ struct BoneStyle {
   bool shades_moving{false};      // all of this also while the camera moves: pictures, no screen
   double through_length{0.0007};  // the share of a structure's colour in the bone over it is
   double through_share{0.85};     // share exp(-depth / length) [m]
-  bool kept_layer{true};          // what rests is drawn once; else all in every frame
+  /// The visibility pass on a thread of its own, for a screen. When it ends is then a matter of
+  /// luck, and with it a pixel here and there: pictures that must be the same each time do without.
+  bool background_visibility{false};
+  bool visible_array{true};  // else the complete array always
+  bool kept_layer{true};     // what rests is drawn once; else all in every frame
 };
 
 /// As a microscope shows wet bone.

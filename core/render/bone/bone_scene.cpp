@@ -79,6 +79,7 @@ std::vector<Capsule> capsules_of(const BoneFrame& frame) {
 /// A bone as it is in the kept picture.
 struct DrawnBone {
   Eigen::Matrix4d pose;
+  std::uint64_t array;  // BoneObject::array()
   std::array<bone::Dent, 2> dents;
   std::vector<PixelBox> covers;  // by eye
 };
@@ -129,13 +130,17 @@ struct BoneScene::Impl {
         dust(gl),
         blood(gl),
         layer(gl),
-        shading(gl, look) {}
+        shading(gl, look) {
+    if (style.visible_array && style.background_visibility) {
+      worker = std::make_unique<VisibilityWorker>();
+    }
+  }
   ~Impl() { gl.delete_program(program); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  void follow(const BoneFrame& frame);
-  void begin(const BoneFrame& frame);
+  void follow(const BoneFrame& frame, const std::vector<EyeView>& views);
+  void begin(const BoneFrame& frame, const std::vector<EyeView>& views);
   std::vector<PixelBox> changed_parts(const BoneFrame& frame, const std::vector<EyeView>& views,
                                       int width, int height);
   void keep(const BoneFrame& frame, const std::vector<EyeView>& views, bool there, int across,
@@ -176,11 +181,12 @@ struct BoneScene::Impl {
   std::vector<std::shared_ptr<const geometry::Mesh>> scenery;  // likewise
   std::map<std::uint32_t, std::unique_ptr<BoneObject>> bones;
   std::map<const geometry::Mesh*, std::unique_ptr<BoneMesh>> meshes;
+  std::unique_ptr<VisibilityWorker> worker;
   BoneFrameFigures figures;
 };
 
 /// Bones and meshes as the frame has them: new ones made, others let go.
-void BoneScene::Impl::begin(const BoneFrame& frame) {
+void BoneScene::Impl::begin(const BoneFrame& frame, const std::vector<EyeView>& views) {
   std::erase_if(bones, [&](const auto& known) {
     return std::none_of(frame.bones.begin(), frame.bones.end(),
                         [&](const SceneBone& bone) { return bone.id == known.first; });
@@ -196,18 +202,31 @@ void BoneScene::Impl::begin(const BoneFrame& frame) {
     }
   }
   std::erase_if(meshes, [&](const auto& known) { return !wanted.contains(known.first); });
-  follow(frame);
+  if (worker != nullptr) {
+    for (const VisibilityResult& result : worker->take()) {
+      if (const auto found = bones.find(result.id); found != bones.end()) {
+        found->second->take(result);
+      }
+    }
+  }
+  follow(frame, views);
 }
 
-void BoneScene::Impl::follow(const BoneFrame& frame) {
+void BoneScene::Impl::follow(const BoneFrame& frame, const std::vector<EyeView>& views) {
   figures = {};
+  figures.visible_only = style.visible_array;
   for (const SceneBone& bone : frame.bones) {
     std::unique_ptr<BoneObject>& object = bones[bone.id];
     if (object == nullptr) {
-      object = std::make_unique<BoneObject>(gl, depths, bone.surface);
+      object = std::make_unique<BoneObject>(gl, bone.id, depths, bone.surface);
     }
-    figures.uploaded += object->follow(*bone.volume, palette);
+    std::vector<Eigen::Vector3d> eyes;
+    for (const EyeView& view : views) {
+      eyes.emplace_back(bone.pose.inverse() * view.eye);
+    }
+    figures.uploaded += object->follow(*bone.volume, palette, eyes, worker.get());
     figures.triangles += object->triangle_count();
+    figures.visible_only = figures.visible_only && object->has_visible_array();
   }
 }
 
@@ -237,9 +256,10 @@ std::vector<PixelBox> BoneScene::Impl::changed_parts(const BoneFrame& frame,
   std::map<std::uint32_t, DrawnBone> before = std::exchange(shown, {});
   for (const SceneBone& bone : frame.bones) {
     const BoneObject& object = *bones.at(bone.id);
-    DrawnBone now{bone.pose.matrix(), bone.dents, {}};
+    DrawnBone now{bone.pose.matrix(), style.visible_array ? object.array() : 0, bone.dents, {}};
     const auto known = before.find(bone.id);
-    const bool same = known != before.end() && known->second.pose == now.pose;
+    const bool same =
+        known != before.end() && known->second.pose == now.pose && known->second.array == now.array;
     const Eigen::AlignedBox3d bounds = object.blocks().bounds();
     for (std::size_t eye = 0; eye < views.size(); ++eye) {
       const Eigen::Matrix4d clip = views[eye].projection * views[eye].view * now.pose;
@@ -292,8 +312,9 @@ void BoneScene::Impl::draw_bones(const BoneFrame& frame, const EyeView& view, co
     dents.set(gl, bone.dents);
     BoneObject& object = *bones.at(bone.id);
     const Eigen::Matrix4d clip = view.projection * view.view * bone.pose.matrix();
-    figures.drawn += all ? object.draw()
-                         : object.draw(part, clip, width, height, !bounds_of(bone.dents).isEmpty());
+    figures.drawn += all ? object.draw(style.visible_array)
+                         : object.draw(style.visible_array, part, clip, width, height,
+                                       !bounds_of(bone.dents).isEmpty());
   }
   dents.set(gl, {});
   draw_meshes(frame.scenery, view, false);
@@ -450,7 +471,7 @@ void BoneScene::draw(const BoneFrame& frame, int width, int height) {
   } else {
     views = {view_of(frame.camera, aspect)};
   }
-  scene.begin(frame);
+  scene.begin(frame, views);
   std::transform(views.begin(), views.end(), views.begin(), turned);
   const bool there = scene.layer.begin(width, height);
   const Colour& ground = scene.style.background;

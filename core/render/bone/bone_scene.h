@@ -60,13 +60,16 @@ struct BoneFrameFigures {
   std::size_t drawn{0};      // of them sent to OpenGL, for all eyes
   std::size_t pixels{0};     // of the bones' picture drawn anew
   std::size_t uploaded{0};   // bytes of bone that changed
+  bool visible_only{false};  // the visible arrays were drawn
 };
 
 /// Draws bones while they are drilled, tools and dust in OpenGL 3.3 core, off screen or in a
 /// window. One thread calls everything, with the context current, also for the destructor; the
 /// volumes may change meanwhile. Source: Morris 2006, §3.2.7.
 ///
-/// Under a camera at rest the bones' picture is kept, and drawn anew only where a surface or a pose
+/// While the camera moves all triangles are drawn; after it has come to rest those with a vertex
+/// whose normal is less than 90 degrees away from the eye's direction, once these are found. Under
+/// a camera at rest the bones' picture is kept, and drawn anew only where a surface or a pose
 /// changed: what a frame costs then does not follow the size of the bones.
 class BoneScene {
  public:

@@ -153,6 +153,7 @@ int bone_picture(const BonePictureOptions& options) {
 
   render::BoneStyle style = render::microscope_style();
   style.vignette = 0.0;
+  style.visible_array = false;  // one picture
   const int width = kFiner * options.width;
   const int height = kFiner * options.height;
   render::OffscreenContext context(width, height);

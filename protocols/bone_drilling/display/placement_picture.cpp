@@ -27,6 +27,7 @@ class Views {
         height_(kSharper * bone.height),
         pose_(pose_of(bone.placement, bone.model->grid)) {
     frame_.camera = bone.camera;
+    style_.visible_array = false;
   }
   render::Image draw(const bone::BoneModel& model, const render::BoneStyle& style, bool through) {
     const bone::BoneVolume volume(model);
@@ -37,12 +38,14 @@ class Views {
     scene.draw(frame_, width_, height_);
     return context.read();
   }
+  const render::BoneStyle& style() const { return style_; }
   const Eigen::Isometry3d& pose() const { return pose_; }
 
  private:
   int width_;
   int height_;
   Eigen::Isometry3d pose_;
+  render::BoneStyle style_;
   render::BoneFrame frame_;
 };
 
@@ -79,8 +82,8 @@ bool holds_any(const bone::BoneModel& model) {
 render::Image bare_picture(const PlacedBone& bone) {
   const bone::BoneModel& model = *bone.model;
   Views views(bone);
-  render::Image image = views.draw(model, {}, true);
-  render::BoneStyle on_black;
+  render::Image image = views.draw(model, views.style(), true);
+  render::BoneStyle on_black = views.style();
   on_black.background = {};
   on_black.ambient = 0.4;  // nothing of what shows through is black
   const bone::BoneModel inner = part_of(model, [&](std::size_t at) {

@@ -28,8 +28,10 @@ std::vector<StageStill> make_stills(const BoneDefinition& d, const bone::BoneMod
   const float deepest = *std::max_element(depths.begin(), depths.end());
 
   constexpr int kFiner = 2;  // edges are smoothed
+  render::BoneStyle style;
+  style.visible_array = false;
   render::OffscreenContext context(kFiner * width, kFiner * height);
-  render::BoneScene scene(context.gl(), {}, model.structures, depths_of(model));
+  render::BoneScene scene(context.gl(), style, model.structures, depths_of(model));
   bone::BoneVolume volume(model);
   const Camera& camera = d.simulator.camera.start;
   render::BoneFrame frame;

@@ -30,6 +30,7 @@ constexpr double kAspect = static_cast<double>(kWidth) / kHeight;
 BoneStyle plain_style() {
   BoneStyle style;
   style.background = {0.0, 0.0, 0.0};
+  style.background_visibility = false;
   style.smooth_edges = false;
   return style;
 }
@@ -110,29 +111,58 @@ TEST(BoneSceneTest, ABallCoversTheDiscThatItsRadiusAndDistanceSay) {
       << "what faces the light is brighter";
 }
 
-TEST(BoneSceneTest, WhatIsDrilledAtRestLooksAsIfDrawnAnew) {
-  const BoneModel model = bone::ball_model(48, 20.0);
+TEST(BoneSceneTest, TheVisibleArrayShowsWhatTheCompleteOneShows) {
+  const BoneModel model = bone::model_of(48, [](const Voxel& v) {
+    const double bumps =
+        3.0 * std::sin(0.7 * v.x()) * std::sin(0.9 * v.y()) * std::sin(0.8 * v.z());
+    return (v.cast<double>() - Eigen::Vector3d::Constant(23.5)).norm() + bumps < 18.0 ? 1 : 0;
+  });
   BoneVolume volume(model);
   Stage stage(model);
-  const BoneFrame frame = frame_of(model, volume);
+  BoneFrame frame = frame_of(model, volume);
+  const Image complete = stage.draw(frame);
+  EXPECT_FALSE(stage.scene.figures().visible_only) << "the camera has only come";
+  EXPECT_EQ(stage.scene.figures().drawn, stage.scene.figures().triangles);
+  const Image visible = stage.draw(frame);
+  EXPECT_TRUE(stage.scene.figures().visible_only);
+  EXPECT_LT(10 * stage.scene.figures().drawn, 7 * stage.scene.figures().triangles);
+  // A triangle that faces the eye while none of its vertices' normals do lies at an outline.
+  EXPECT_LT(count_different(complete, visible), 0.002 * kWidth * kHeight);
+  frame.camera = gone_round(frame.camera, 0.1);
   stage.draw(frame);
-  for (int step = 0; step < 12; ++step) {
-    for (int k = -4; k <= 4; ++k) {
-      for (int j = -4; j <= 4; ++j) {
-        for (int i = -4; i <= 4; ++i) {
-          const std::int32_t at = volume.address(Voxel(14 + 2 * step + i, 24 + j, 42 + k));
-          if (at != 0 && i * i + j * j + k * k <= 16) {
-            volume.take(at, 1.0F);
+  EXPECT_FALSE(stage.scene.figures().visible_only) << "it moves again";
+}
+
+TEST(BoneSceneTest, WhatIsDrilledAtRestLooksAsIfDrawnAnew) {
+  const BoneModel model = bone::ball_model(48, 20.0);
+  BoneStyle style = plain_style();
+  for (const bool thread : {false, true}) {
+    BoneVolume volume(model);
+    style.background_visibility = thread;
+    Stage stage(model, style);
+    const BoneFrame frame = frame_of(model, volume);
+    stage.draw(frame);
+    do {  // until the pass has come to its end
+      stage.draw(frame);
+    } while (!stage.scene.figures().visible_only);
+    for (int step = 0; step < 12; ++step) {
+      for (int k = -4; k <= 4; ++k) {
+        for (int j = -4; j <= 4; ++j) {
+          for (int i = -4; i <= 4; ++i) {
+            const std::int32_t at = volume.address(Voxel(14 + 2 * step + i, 24 + j, 42 + k));
+            if (at != 0 && i * i + j * j + k * k <= 16) {
+              volume.take(at, 1.0F);
+            }
           }
         }
       }
+      const Image image = stage.draw(frame);
+      if (step > 0) {
+        EXPECT_LT(stage.scene.figures().uploaded, 60'000U) << "only what changed is sent";
+      }
+      Stage fresh(model);
+      EXPECT_LT(count_different(image, fresh.draw(frame)), 0.002 * kWidth * kHeight);
     }
-    const Image image = stage.draw(frame);
-    if (step > 0) {
-      EXPECT_LT(stage.scene.figures().uploaded, 60'000U) << "only what changed is sent";
-    }
-    Stage fresh(model);
-    EXPECT_LT(count_different(image, fresh.draw(frame)), 0.002 * kWidth * kHeight);
   }
 }
 
