@@ -229,8 +229,8 @@ bool AbortedPass::partner_stops() const {
 
 std::string AbortedPass::cause(const protocols::PassResult& result) const {
   const std::string fault = device::describe(result.fault);
-  return p_.definition.devices() > 1 ? fmt::format("device {}: {}", result.device + 1, fault)
-                                     : fault;
+  const std::vector<protocols::DeviceArm> arms = p_.definition.arms();
+  return arms.size() > 1 ? fmt::format("{}: {}", arms[result.device].name, fault) : fault;
 }
 
 std::string AbortedPass::why_broken_off() const {

@@ -110,7 +110,7 @@ TEST(DeviceSetTest, ARotationGoesOnAfterAnOrientationThatIsNoNumber) {
   tick(set, push, {});
   set.reset();
   set.engage();
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 400; ++i) {
     tick(set, push, {});
   }
   EXPECT_EQ(set.fault(), device::Fault::kNone);
