@@ -227,10 +227,21 @@ bool AbortedPass::partner_stops() const {
   return partner && partner->stops;
 }
 
+/// The fault, with the name of the device that it is of; a stop or a channel is of none.
 std::string AbortedPass::cause(const protocols::PassResult& result) const {
+  using device::Fault;
   const std::string fault = device::describe(result.fault);
   const std::vector<protocols::DeviceArm> arms = p_.definition.arms();
-  return arms.size() > 1 ? fmt::format("{}: {}", arms[result.device].name, fault) : fault;
+  if (arms.size() < 2 || result.fault == Fault::kEmergencyStop ||
+      result.fault == Fault::kChannelLost || result.fault == Fault::kBeyondLimit) {
+    return fault;
+  }
+  const std::string& name = arms[result.device].name;
+  return fmt::format("{}: {}",
+                     !name.empty()        ? name
+                     : result.device == 0 ? "first device"
+                                          : "second device",
+                     fault);
 }
 
 std::string AbortedPass::why_broken_off() const {

@@ -125,7 +125,9 @@ class Push final : public protocols::Pass {
 };
 
 struct PairDefinition final : protocols::Definition {
-  std::vector<protocols::DeviceArm> arms() const override { return {2, {envelope}}; }
+  std::vector<protocols::DeviceArm> arms() const override {
+    return {{envelope, "finger"}, {envelope, "thumb"}};
+  }
   bool has_target() const override { return false; }
   std::vector<std::string> description() const override { return {}; }
   double longest(int trials) const override { return trials * kRunning; }
@@ -298,7 +300,7 @@ TEST_F(TwoDevicesTest, TheFileSaysWhichDeviceItWasAndWhatItSaid) {
       aborted = event.text;
     }
   }
-  EXPECT_THAT(aborted, testing::AllOf(testing::HasSubstr("device 2: the device did not answer"),
+  EXPECT_THAT(aborted, testing::AllOf(testing::HasSubstr(": thumb: the device did not answer"),
                                       testing::HasSubstr("; the cable is out")));
 }
 
