@@ -100,13 +100,11 @@ class Schema {
                      std::string description) {
     return add(std::move(name), std::move(description),
                [=](Table& table, const KeyDescription& key, T& into) {
-                 const std::string own = into.*member;
                  if (key.stands_in(table, into.*member)) {
                    into.*member = table.shown_text(key.name);
                  } else if (!(into.*member).empty()) {
                    into.*member = table.shown_as(key.name, into.*member);
                  }
-                 table.check_braces(key.name, into.*member, own);
                  if ((into.*member).size() > most) {
                    table.reject(key.name, std::to_string((into.*member).size()) + " bytes long",
                                 "at most " + std::to_string(most) + " bytes");

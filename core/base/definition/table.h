@@ -90,9 +90,6 @@ class Table {
   /// translate() it is the translation.
   std::string shown_text(std::string_view key);
   std::string shown_text(std::string_view key, std::string_view otherwise);
-  /// Refuses a word in braces, as "{structure}", that the program's own text lacks: nothing would
-  /// stand for it, and participants would read the braces. A text without any of its own is free.
-  void check_braces(std::string_view key, std::string_view text, std::string_view own);
   /// The same of a text of the program's own, as if it stood under `key`.
   std::string shown_as(std::string_view key, std::string text);
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);

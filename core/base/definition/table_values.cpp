@@ -32,19 +32,6 @@ double harmless(const Bounds& b) {
   return std::isfinite(b.low) && std::isfinite(b.high) ? 0.5 * (b.low + b.high) : fallback(b);
 }
 
-/// The words in braces of a text, braces and all.
-std::vector<std::string> braces_in(std::string_view text) {
-  std::vector<std::string> braces;
-  for (std::size_t from = text.find('{'); from != std::string_view::npos;
-       from = text.find('{', from + 1)) {
-    const std::size_t to = text.find_first_of("{}", from + 1);
-    if (to != std::string_view::npos && text[to] == '}' && to > from + 1) {
-      braces.emplace_back(text.substr(from, to + 1 - from));
-    }
-  }
-  return braces;
-}
-
 }  // namespace
 
 /// The value under `key`, or nothing with the problem noted. @param any  other values of the type
@@ -339,21 +326,7 @@ std::string Table::shown_text(std::string_view key) {
 }
 
 std::string Table::shown_text(std::string_view key, std::string_view otherwise) {
-  std::string shown = shown_as(key, has(key) ? text(key) : std::string(otherwise));
-  check_braces(key, shown, otherwise);
-  return shown;
-}
-
-void Table::check_braces(std::string_view key, std::string_view text, std::string_view own) {
-  const std::vector<std::string> known = braces_in(own);
-  if (known.empty()) {
-    return;
-  }
-  for (const std::string& word : braces_in(text)) {
-    if (std::find(known.begin(), known.end(), word) == known.end()) {
-      reject(key, fmt::format("a text with {}", word), fmt::format("{}", fmt::join(known, ", ")));
-    }
-  }
+  return shown_as(key, has(key) ? text(key) : std::string(otherwise));
 }
 
 std::string Table::shown_as(std::string_view key, std::string text) {

@@ -53,15 +53,6 @@ TEST(HintSetupTest, AMissingFileIsToldAsTheKeyThatNamesIt) {
               HasSubstr("hints.file: /nowhere/none.toml: no such file; haptrial bone safe"));
 }
 
-TEST(HintSetupTest, AWordInBracesThatNothingStandsForIsRefused) {
-  const auto refusal = [](const std::string& line) {
-    return test::message_of([&] { read("file = \"s\"\n" + line); });
-  };
-  EXPECT_THAT(refusal("speed_text = \"Langsamer (nahe {struktur})\"\n"),
-              HasSubstr("hints.speed_text is a text with {struktur}; allowed: {structure}"));
-  EXPECT_NO_THROW(read("file = \"s\"\nspeed_text = \"Langsamer\"\n"));
-}
-
 TEST(HintSetupTest, TextsMayNameTheStructure) {
   const HintSetup s =
       read("file = \"s\"\nforce_text = \"Leichter! ({structure})\"\nhidden_text = \"Verdeckt\"\n");
