@@ -112,6 +112,11 @@ Experiment load_experiment(const std::filesystem::path& file, const std::string&
   if (translations) {
     check_translations(*translations, experiment);
   }
+  const auto unknown =
+      unknown_placeholders(translations.value_or(Translations()), experiment.shown, file.string());
+  if (!unknown.empty()) {
+    throw InputError(fmt::format("{}", fmt::join(unknown, "\n")));
+  }
   check_pictures(*experiment.definition, folder);
   experiment.study->protocol().load(*experiment.definition, folder);
   experiment.study->check_loaded(*experiment.definition);

@@ -47,6 +47,15 @@ TEST(RecordedBoundsTest, LevelsThatAFileHasNoRoomForCanBeReadButNotBegun) {
               HasSubstr("allowed: words of at most 64 bytes"));
 }
 
+TEST(RecordedBoundsTest, UnknownPlaceholdersCanBeReadButNotBegun) {
+  const std::string shipped =
+      test::read_text(test::shipped_definition().parent_path() / "first_drilling.toml");
+  EXPECT_THAT(refused_file(shipped + "\n[hints]\nkinds = [\"hidden\"]\n"
+                                     "hidden_text = \"{struktur}\"\n"),
+              HasSubstr("study.toml: hints.hidden_text has {struktur}, which stands for nothing; "
+                        "allowed: {structure}"));
+}
+
 TEST(RecordedBoundsTest, APowerPlanOfVersion02CanBeReadButNotAsked) {
   const std::string said = refused_file(test::brisk_text() +
                                         "\n[power]\nwatch = \"a\"\nrobust = true\n"

@@ -111,6 +111,12 @@ class Schema {
                  }
                });
   }
+  /// Words in braces that stand for something in the shown text that was added last: "{time}".
+  Schema& placeholders(std::vector<std::string> words) {
+    return check([key = keys_.back().description.name, words = std::move(words)](Table& table, T&) {
+      table.note_placeholders(key, words);
+    });
+  }
   /// One of some words, each of which stands for a value of the member.
   template <class E>
   Schema& choice(std::string name, E T::*member, std::vector<std::pair<std::string, E>> words,

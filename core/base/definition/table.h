@@ -92,6 +92,8 @@ class Table {
   std::string shown_text(std::string_view key, std::string_view otherwise);
   /// The same of a text of the program's own, as if it stood under `key`.
   std::string shown_as(std::string_view key, std::string text);
+  /// The words in braces that stand for something in the shown text of `key`.
+  void note_placeholders(std::string_view key, const std::vector<std::string>& words);
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   std::vector<double> numbers(std::string_view key, const Bounds& bounds, std::string_view unit);
   std::vector<std::string> texts(std::string_view key);

@@ -344,6 +344,14 @@ std::string Table::shown_as(std::string_view key, std::string text) {
   return entry.text;
 }
 
+void Table::note_placeholders(std::string_view key, const std::vector<std::string>& words) {
+  for (ShownText& each : document_->shown) {
+    if (each.key == node_->full_name(key)) {
+      each.placeholders = words;
+    }
+  }
+}
+
 void Table::translate(const Translations& translations) { document_->translations = translations; }
 
 std::vector<ShownText> Table::shown_texts() const { return document_->shown; }

@@ -1,6 +1,7 @@
 #include "core/base/definition/translations.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <toml++/toml.h>
 #include <algorithm>
@@ -27,6 +28,16 @@ void take_texts(const toml::table& table, const std::string& path, Translations&
                       into.file, value.source().begin.line, name));
     }
   }
+}
+
+/// "{time}"; a brace that is not closed with all that follows it.
+std::vector<std::string> words_in_braces(std::string_view text) {
+  std::vector<std::string> words;
+  for (std::size_t at = text.find('{'); at != std::string_view::npos; at = text.find('{', at + 1)) {
+    const std::size_t end = text.find('}', at);
+    words.emplace_back(text.substr(at, end == std::string_view::npos ? end : end + 1 - at));
+  }
+  return words;
 }
 
 }  // namespace
@@ -57,6 +68,24 @@ std::vector<std::string> unknown_translations(const Translations& translations,
       sentences.push_back(
           fmt::format("{}: {} is no text that participants of this definition read{}",
                       translations.file, key, hint));
+    }
+  }
+  return sentences;
+}
+
+std::vector<std::string> unknown_placeholders(const Translations& translations,
+                                              const std::vector<ShownText>& shown,
+                                              std::string_view file) {
+  std::vector<std::string> sentences;
+  for (const ShownText& text : shown) {
+    for (const std::string& word :
+         text.placeholders.empty() ? std::vector<std::string>() : words_in_braces(text.text)) {
+      if (std::ranges::find(text.placeholders, word) == text.placeholders.end()) {
+        const bool by_key = translations.by_key.contains(text.key);
+        sentences.push_back(fmt::format("{}: {} has {}, which stands for nothing; allowed: {}",
+                                        by_key ? translations.file : file, text.key, word,
+                                        fmt::join(text.placeholders, ", ")));
+      }
     }
   }
   return sentences;

@@ -13,6 +13,8 @@ struct ShownText {
   std::string key;         // "response.question"
   std::string text;        // in the language that is wanted, if it has that
   bool translated{false};  // false without translations, too
+  std::vector<std::string>
+      placeholders{};  // "{time}": what stands for something; none: all is text
 };
 
 /// Texts of a definition in another language.
@@ -40,6 +42,11 @@ Translations load_translations(const std::filesystem::path& file, std::string_vi
 /// Sentences for keys of the file that the definition does not show, with the nearest that it does.
 std::vector<std::string> unknown_translations(const Translations& translations,
                                               const std::vector<ShownText>& shown);
+/// Sentences for words in braces that stand for nothing, in texts that have placeholders.
+/// @param file  of the definition
+std::vector<std::string> unknown_placeholders(const Translations& translations,
+                                              const std::vector<ShownText>& shown,
+                                              std::string_view file);
 /// Sentences for texts that have no translation.
 std::vector<std::string> missing_translations(const Translations& translations,
                                               const std::vector<ShownText>& shown);

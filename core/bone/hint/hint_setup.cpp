@@ -43,6 +43,7 @@ void read_texts(Table& table, HintSetup& setup) {
     const std::string key = fmt::format("{}_text", name_of(kind));
     table.describe({key, kReaders[i], kTexts[i]});
     setup.texts[i] = table.shown_text(key, kTexts[i]);
+    table.note_placeholders(key, {std::string(kStructure)});
   }
 }
 
@@ -111,7 +112,8 @@ void load_limits(HintSetup& setup, const std::filesystem::path& folder) {
 
 std::string hint_text(const HintSetup& setup, HintKind kind, std::string_view structure) {
   std::string text = setup.texts[static_cast<std::size_t>(kind)];
-  if (const std::size_t at = text.find(kStructure); at != std::string::npos) {
+  for (std::size_t at = text.find(kStructure); at != std::string::npos;
+       at = text.find(kStructure, at + structure.size())) {
     text.replace(at, kStructure.size(), structure);
   }
   return text;

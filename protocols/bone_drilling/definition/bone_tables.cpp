@@ -196,8 +196,10 @@ const Schema<D>& bone_display_schema() {
           .shown_text("opened_text", &D::opened_text, kLongestLine,
                       "Words over the picture after a vital structure was opened; {structure} and "
                       "{time} stand for its name and when that was")
+          .placeholders({"{structure}", "{time}"})
           .shown_text("time_text", &D::time_text, kLongestLine,
                       "Words in a corner of the picture for the time that is left, {time}")
+          .placeholders({"{time}"})
           .shown_text("plan_text", &D::plan_text, kLongestLine,
                       "Legend of the section by the plan, which the key P shows")
           .flag("slices", &D::slices,

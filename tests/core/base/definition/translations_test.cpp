@@ -73,6 +73,28 @@ TEST(TranslationsTest, MissingAndUnknownKeysAreNamedWithTheFile) {
   EXPECT_THAT(missing.front(), HasSubstr("texts.ar.toml: response.question is missing"));
 }
 
+TEST(TranslationsTest, WordsInBracesMustStandForSomethingInTextsWithPlaceholders) {
+  Translations translations = load("[response]\nquestion = \"{time} {temps}\"\n");
+  Table root =
+      Table::parse("[response]\nquestion = \"{time} left {\"\nplain = \"a {b}\"\n", "s.toml");
+  const auto read_texts = [](Table& from) {
+    Table response = from.table("response");
+    response.shown_text("question");
+    response.note_placeholders("question", {"{time}"});
+    response.shown_text("plain");
+  };
+  read_texts(root);
+  EXPECT_THAT(unknown_placeholders({}, root.shown_texts(), "s.toml"),
+              ElementsAre("s.toml: response.question has {, which stands for nothing; allowed: "
+                          "{time}"))
+      << "a text without placeholders may have braces";
+  root.translate(translations);
+  read_texts(root);
+  const auto unknown = unknown_placeholders(translations, root.shown_texts(), "s.toml");
+  ASSERT_EQ(unknown.size(), 1u);
+  EXPECT_THAT(unknown.front(), HasSubstr("texts.ar.toml: response.question has {temps}, which"));
+}
+
 TEST(TranslationsTest, OnlyTextsAreTranslations) {
   for (const char* wrong : {"rate = 1000\n", "[response]\nquestion = \"\"\n", "x = [\"a\"]\n"}) {
     EXPECT_THROW(load(wrong), InputError) << wrong;

@@ -59,6 +59,9 @@ TEST(HintSetupTest, TextsMayNameTheStructure) {
   EXPECT_EQ(hint_text(s, HintKind::kForce, "facial nerve"), "Leichter! (facial nerve)");
   EXPECT_EQ(hint_text(s, HintKind::kHidden, "facial nerve"), "Verdeckt");
   EXPECT_EQ(hint_text(s, HintKind::kSpeed, "dura"), "Slow down (near dura)");
+  EXPECT_EQ(hint_text(read("file = \"s\"\nspeed_text = \"{structure}! {structure}!\"\n"),
+                      HintKind::kSpeed, "dura"),
+            "dura! dura!");
 }
 
 // Safe values on their way through a file.
