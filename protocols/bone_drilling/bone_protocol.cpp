@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -58,6 +60,7 @@ class DrillingOutputs {
              const std::shared_ptr<const BoneStage>& stage) {
     if (stage != stage_) {
       stage_ = stage;
+      began_ = tick;
       vital_ = bone::vital_structures(*stage->model);
       renderer_.reset();
       probe_.emplace(stage);
@@ -65,7 +68,10 @@ class DrillingOutputs {
         renderer_ = std::make_unique<BoneRenderer>(replay_.definition(), stage);
       }
     }
-    const bone::DrillingView seen = hints_.with(without_hints, sequence, vital_);
+    bone::DrillingView seen = hints_.with(without_hints, sequence, vital_);
+    seen.elapsed = static_cast<double>(tick - began_) / replay_.rate();
+    seen.time_limit = replay_.definition().drilling.time_limit;
+    seen.progress = std::min(1.0, seen.elapsed / seen.time_limit);
     constexpr std::uint64_t kProbeEvery = 20;  // ticks
     if (nerves_) {
       nerves_->tick(sequence);
@@ -112,6 +118,7 @@ class DrillingOutputs {
   std::vector<std::string> vital_;  // structures of the bone
   double every_;                    // ticks from picture to picture
   double next_{0.0};
+  std::uint64_t began_{0};  // tick on which the bone was new
   int count_{0};
   InjuryChime injury_;
   std::unique_ptr<ReplayedNerves> nerves_;  // heard with the drill; null: nobody watched any

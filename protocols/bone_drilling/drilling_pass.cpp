@@ -186,6 +186,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
   bone::DrillingView seen = view_of(simulator_, input);
   seen.progress = static_cast<double>(ticks_) / static_cast<double>(time_limit_);
   seen.time_limit = parameters_.time_limit;
+  seen.elapsed = seen.progress * seen.time_limit;
   seen.tone = logs_.nerve_tone();
   if (hints_ != nullptr) {
     const hint::HintsNow now = hints_->now();

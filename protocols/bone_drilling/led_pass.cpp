@@ -169,6 +169,7 @@ PassOutput LedPass::output(const Readings& readings) noexcept {
   seen.progress = std::min(
       1.0, static_cast<double>(ticks_) / std::max(1.0, p_.parameters.time_limit * p_.rate));
   seen.time_limit = p_.parameters.time_limit;
+  seen.elapsed = seen.progress * seen.time_limit;
   seen.tone = p_.logs.nerve_tone();
   out.shown = seen;
   rows_.log_camera(sequence_, camera_changed_);

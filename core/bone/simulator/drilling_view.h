@@ -44,6 +44,7 @@ struct DrillingView {
   TubeView tube;
   std::array<Dent, 2> dents{};  // of soft tissue in the bone itself, by tool and tube
   double temperature{0.0};      // at the burr; 0: nothing warms up [degree C]
+  double elapsed{0.0};          // since the bone was new [s]
   double progress{0.0};         // of the time limit, as a fraction
   double time_limit{0.0};       // [s]
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 
@@ -47,9 +48,12 @@ class Watcher {
         renderer_.reset();
         renderer_ = std::make_unique<protocols::BoneRenderer>(replay_.definition(), stage);
         stage_ = stage;
+        began_ = tick;
       }
       if (wanted(tick)) {
-        frame(renderer_->draw(seen));
+        bone::DrillingView timed = seen;
+        timed.elapsed = static_cast<double>(tick - began_) / replay_.rate();
+        frame(renderer_->draw(timed));
       }
       if (tick == last_) {
         end(renderer_->draw(from_the_start(seen, *stage)));
@@ -61,6 +65,7 @@ class Watcher {
  private:
   const protocols::BoneReplay& replay_;
   std::uint64_t last_;
+  std::uint64_t began_{0};  // tick on which the bone was new
   std::shared_ptr<const protocols::BoneStage> stage_;
   std::unique_ptr<protocols::BoneRenderer> renderer_;
 };

@@ -337,7 +337,7 @@ void BoneDisplay::show_injury(const bone::DrillingView& seen) {
   if (seen.injury.label == 0 || seen.injury.since > kWords) {
     return;
   }
-  const double when = seen.progress * seen.time_limit - seen.injury.since;
+  const double when = seen.elapsed - seen.injury.since;
   std::string words = with(definition_.opened_text, "{time}", clock_time(when));
   words = with(std::move(words), "{structure}", stage_->model->structures[seen.injury.label].name);
   for (int left = 0; left < width_; left += width()) {

@@ -119,5 +119,22 @@ TEST(BoneDrawingTest, AnInjuryHasARedFrameAtOnceAndWordsForAWhile) {
   EXPECT_EQ(reds(6.0).second, 0);
 }
 
+/// A replay for raters has no clock, and its words have the time all the same.
+TEST(BoneDrawingTest, WordsOfAnInjurySayWhenItWas) {
+  const BoneDefinition definition;
+  View view(definition);
+  const auto picture = [&view](double elapsed, double since) {
+    bone::DrillingView seen;
+    seen.shown = true;
+    seen.eye = {0.01, 0.06, 0.03};
+    seen.injury = {1, since};
+    seen.elapsed = elapsed;
+    view.drawing->draw(seen);
+    return view.context.read().rgb;
+  };
+  EXPECT_EQ(picture(12.5, 2.0), picture(14.5, 4.0)) << "both were after 0:10";
+  EXPECT_NE(picture(12.5, 2.0), picture(72.5, 2.0));
+}
+
 }  // namespace
 }  // namespace haptrial::protocols
