@@ -197,9 +197,9 @@ class BoneDrilling final : public Protocol {
 };
 
 void BoneDrilling::replay(const ReplayRequest& request) const {
-  if (!request.phase.empty() && request.phase != record::kDrillingPhase) {
-    throw InputError(
-        fmt::format("--phase is '{}'; allowed: {}", request.phase, record::kDrillingPhase));
+  if (const char* phase = record::kDrillingPhase.name();
+      !request.phase.empty() && request.phase != phase) {
+    throw InputError(fmt::format("--phase is '{}'; allowed: {}", request.phase, phase));
   }
   const BoneReplay replay(request.file);
   DrillingOutputs outputs(request, replay);
