@@ -329,8 +329,8 @@ int rate_import(const RateImportOptions& options) {
   const analysis::Staging staging(study);
   staging.write(kRatingsFile, drilling::ratings_csv(ratings));
   staging.publish();
-  fmt::print("{} ratings by {} raters: {}\n", ratings.size(), raters.size(),
-             (study / kRatingsFile).string());
+  fmt::print("{} by {}: {}\n", counted(ratings.size(), "rating", "ratings"),
+             counted(raters.size(), "rater", "raters"), (study / kRatingsFile).string());
   for (const drilling::KeyEntry& entry : key.entries) {
     fmt::print("{}  {} procedure {}\n", entry.code, entry.item.session, entry.item.procedure);
   }
