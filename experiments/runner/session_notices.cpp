@@ -127,6 +127,11 @@ void SessionNotices::say_plan(const protocols::Extent& extent, int defined, int 
                    over > 0 ? fmt::format(", {} of them done already", over) : ""));
 }
 
+void SessionNotices::say_stopped(int trial, const std::string& why) const {
+  tell(fmt::format("STOPPED in trial {}: {}; see to it, then clear (c) and start (space)", trial,
+                   why));
+}
+
 void SessionNotices::say_trial(const PlannedTrial& trial, const char* how) const {
   const double minutes = 1e-9 / 60.0 * static_cast<double>(p_.loop.elapsed_ns());
   const int planned = p_.controller.status().trials;

@@ -47,6 +47,9 @@ class SessionNotices {
   /// Says where the session is recorded, and how many trials it has.
   /// @param defined  trials of the whole session  @param over  of them, from earlier runs
   void say_plan(const protocols::Extent& extent, int defined, int over);
+  /// Says in the terminal that a fault has stopped a trial, and how to go on; the console shows it
+  /// by itself.
+  void say_stopped(int trial, const std::string& why) const;
   /// @param how  "completed", "skipped", "aborted"
   void say_trial(const protocols::PlannedTrial& trial, const char* how) const;
 

@@ -181,6 +181,7 @@ void AbortedPass::see_to(const protocols::PassResult& result) {
   if ((fault || overloaded) && p_.controller.attended()) {
     p_.controller.status().fault = all;
     p_.controller.requests().stopped = true;  // a person sees to the cause
+    p_.notices.say_stopped(p_.record.pass().trial, all);
   } else if (result.fault == device::Fault::kEmergencyStop && p_.real && partner_stops()) {
     p_.pacing.recover_when([this] { return !partner_stops(); });  // who stopped sees to the cause
   } else if ((fault || overloaded) && p_.real) {

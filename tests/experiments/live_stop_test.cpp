@@ -162,7 +162,8 @@ TEST_P(LiveFaultTest, StaysUntilAPersonClearsIt) {
   }
   EXPECT_THAT(person.status()["fault"].get<std::string>(), HasSubstr(GetParam().sentence));
   ASSERT_TRUE(person.ask("abort"));
-  session.wait();
+  EXPECT_THAT(session.wait().output,
+              testing::AllOf(HasSubstr("STOPPED in trial 1: "), HasSubstr(GetParam().sentence)));
 }
 
 std::string name_of_trouble(const testing::TestParamInfo<Trouble>& info) { return info.param.name; }
