@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -42,6 +43,7 @@ constexpr std::size_t kVrpnHead = 24;  // bytes: size, seconds, microseconds, se
 constexpr std::size_t kVrpnMost = 65536;            // bytes of a message
 constexpr std::size_t kVrpnPose = 64;               // bytes of a pose
 constexpr std::size_t kVrpnPoseValues = 7;          // position and quaternion
+constexpr double kVrpnLengthError = 0.01;           // of a unit quaternion
 constexpr std::int64_t kVrpnLate = 500'000;         // an older stamp is a clock that stepped [us]
 constexpr std::uint32_t kVrpnSender = 0xFFFFFFFFu;  // type -1, which names a sender
 constexpr std::uint32_t kVrpnType = 0xFFFFFFFEu;    // type -2, which names a type
@@ -238,34 +240,42 @@ class VrpnSource final : public ChannelSource {
     }
     const auto sensor = static_cast<std::int32_t>(word_at(message.body, 0));
     if (sensor == options_.sensor) {
-      take_pose(into, message);
-    } else if (!posed_) {
+      return take_pose(into, message);
+    }
+    if (!posed_) {
       others_.insert(sensor);
     }
     return true;
   }
 
-  void take_pose(ChannelInbox* into, const VrpnMessage& message) {
+  /// @returns whether its quaternion is an orientation, or not measured
+  bool take_pose(ChannelInbox* into, const VrpnMessage& message) {
     posed_ = true;
+    std::array<double, kVrpnPoseValues> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      values[i] = vrpn_number_at(message.body, 8 + 8 * i);
+    }
+    // Servers send zeros for a body that is out of view.
+    if (std::abs(Eigen::Vector4d(values[3], values[4], values[5], values[6]).norm() - 1.0) >
+        kVrpnLengthError) {
+      return false;
+    }
     if (into == nullptr) {
-      return;
+      return true;
     }
     const std::int64_t stamp = std::int64_t{message.seconds} * 1'000'000 + message.microseconds;
     const std::int64_t behind = stamp_ - stamp;
     const bool again = behind == 0 && std::ranges::equal(message.body, body_);
     if (again || (behind > 0 && behind <= kVrpnLate)) {
       note(into, Incident::kRepeated, 1);
-      return;
+      return true;
     }
     stamp_ = stamp;
     body_.assign(message.body.begin(), message.body.end());
-    std::array<double, kVrpnPoseValues> values{};
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = vrpn_number_at(message.body, 8 + 8 * i);
-    }
     InstrumentSample sample{values};
     sample.device_time = message.seconds + 1e-6 * message.microseconds;
     into->take(sample);
+    return true;
   }
 
   VrpnOptions options_;

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -69,10 +70,14 @@ TEST(VrpnChannelTest, PosesOfItsSensorAreRecordedToTheLastBit) {
     for (double& value : pose.values) {
       value = 2.0 * random.uniform() - 1.0;
     }
+    Eigen::Map<Eigen::Vector4d>(pose.values.data() + 3).normalize();
     sent.push_back(pose);
   }
   for (int i = 0; run.rows(0).empty(); ++i) {
-    server.send({kStart - 1.0 + 1e-6 * i, {kGreeting}, 2});
+    VrpnPose greeting = pose_of(0, kStart - 1.0 + 1e-6 * i);
+    greeting.values[0] = kGreeting;
+    greeting.sensor = 2;
+    server.send(greeting);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   for (const VrpnPose& pose : sent) {
@@ -133,6 +138,27 @@ TEST(VrpnChannelTest, MalformedMessagesArePassedOver) {
   EXPECT_EQ(poses(run, 1)[0].values[0], 2.0);
   EXPECT_EQ(run.incidents(Incident::kMalformed, 5).size(), 5u);
   EXPECT_TRUE(run.of_kind(Incident::kLost).empty());
+}
+
+/// Servers send zeros for a body that is out of view. Its position is no measurement, either.
+TEST(VrpnChannelTest, APoseWhoseQuaternionIsNotOfLengthOneIsMalformed) {
+  StandInVrpn server;
+  ChannelRun run(vrpn_keys(server));
+  greet(server, run);
+  const auto send = [&](int number, double qw) {
+    VrpnPose pose = pose_of(number, kStart + 0.01 * number);
+    pose.values[6] = qw;
+    server.send(pose);
+  };
+  send(1, 0.0);
+  send(2, 2.0);
+  send(3, 0.98);
+  send(4, 0.999);
+  send(5, -1.0);
+  const auto rows = poses(run, 2);
+  EXPECT_EQ(rows[0].values[0], 4.0);
+  EXPECT_EQ(rows[1].values[0], 5.0);
+  EXPECT_EQ(run.incidents(Incident::kMalformed, 3).size(), 3u);
 }
 
 TEST(VrpnChannelTest, NumbersThatAreNotFiniteAreNotMeasured) {
