@@ -107,7 +107,7 @@ MachineCheck check_participant(RunOptions& options, const Experiment& experiment
     options.seed = session_seed(options, file);
     check_recording(options, experiment.study->protocol(), d);
     check_pages(options, d);
-    const std::string& device = options.devices.front();
+    const std::string& first = options.devices.front();
     if (!options.resume && device != "virtual" && !replayed_file(device)) {
       protocols::mirror_for(options.person.handedness, *experiment.definition);
     }
@@ -298,7 +298,9 @@ std::vector<MachineCheck> check_machine(const RunOptions& options, const Definit
     const bool touch = check.what.starts_with("touch") && options.devices.front() != "open-haptics";
     const bool window = check.what == "window" && !options.window;
     const bool stream = check.what == "stream" && options.stream;
-    return listed || touch || window ||
+    const std::string& device = options.devices.front();
+    const bool pedal = check.what == "pedal" && (first == "virtual" || replayed_file(first));
+    return listed || touch || window || pedal ||
            (!stream && (check.what == "video" || check.what == "stream")) ||
            (check.what == "sound" && !d.is_heard());
   });

@@ -3,7 +3,9 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/error.h"
 #include "experiments/command/start/touch_checks.h"
+#include "experiments/runner/participant_input.h"
 #include "protocols/definition/definition.h"
 
 namespace haptrial::experiments {
@@ -20,6 +22,18 @@ void mark_unused(const protocols::Definition& definition, std::vector<MachineChe
     if ((sound || beside) && check.state != MachineCheck::State::kReady) {
       check.state = MachineCheck::State::kUnused;
     }
+  }
+}
+
+/// Opens the pedal as a session with a person does.
+MachineCheck check_pedal(const protocols::Definition& definition) {
+  try {
+    SessionPedal pedal({"", "", 0}, definition, true);
+    return pedal.pedal() != nullptr
+               ? MachineCheck{"pedal", MachineCheck::State::kReady, pedal.pedal()->input()}
+               : MachineCheck{"pedal", MachineCheck::State::kUnused, pedal.notice()};
+  } catch (const InputError& error) {
+    return {"pedal", MachineCheck::State::kBroken, error.what()};
   }
 }
 
@@ -45,6 +59,9 @@ std::vector<MachineCheck> doctor_checks(const protocols::Definition* definition,
     checks.push_back(std::move(touch));
   }
   if (definition != nullptr) {
+    if (definition->pedal_use() != protocols::PedalUse::kNone) {
+      checks.push_back(check_pedal(*definition));
+    }
     mark_unused(*definition, checks);
   }
   return checks;

@@ -12,7 +12,7 @@ struct Definition;
 namespace haptrial::experiments {
 
 /// The checks of `doctor`, in a fixed order: clock, real time, pictures, window, sound, video,
-/// stream, disk, every device, a Touch. They take some seconds.
+/// stream, disk, every device, a Touch, the definition's pedal. They take some seconds.
 /// @param definition  whose sessions are to run here; null: any. Checks of what its sessions do
 ///                    without are kUnused
 /// @param folder      for session files; is there
