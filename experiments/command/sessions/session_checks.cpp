@@ -107,7 +107,7 @@ MachineCheck check_participant(RunOptions& options, const Experiment& experiment
     options.seed = session_seed(options, file);
     check_recording(options, experiment.study->protocol(), d);
     check_pages(options, d);
-    const std::string& first = options.devices.front();
+    const std::string& device = options.devices.front();
     if (!options.resume && device != "virtual" && !replayed_file(device)) {
       protocols::mirror_for(options.person.handedness, *experiment.definition);
     }
@@ -292,13 +292,13 @@ MachineCheck check_backup(const std::string& folder, const fs::path& files, doub
 std::vector<MachineCheck> check_machine(const RunOptions& options, const Definition& d,
                                         const fs::path& files, const Listings& devices) {
   std::vector<MachineCheck> checks = doctor_checks(&d, files);
+  const std::string& first = options.devices.front();
   std::erase_if(checks, [&](const MachineCheck& check) {
     const bool listed =
         std::ranges::find(devices, check.what, &device::DeviceListing::name) != devices.end();
-    const bool touch = check.what.starts_with("touch") && options.devices.front() != "open-haptics";
+    const bool touch = check.what.starts_with("touch") && first != "open-haptics";
     const bool window = check.what == "window" && !options.window;
     const bool stream = check.what == "stream" && options.stream;
-    const std::string& device = options.devices.front();
     const bool pedal = check.what == "pedal" && (first == "virtual" || replayed_file(first));
     return listed || touch || window || pedal ||
            (!stream && (check.what == "video" || check.what == "stream")) ||
