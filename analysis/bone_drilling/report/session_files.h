@@ -12,8 +12,8 @@
 
 namespace haptrial::analysis::drilling {
 
-/// What a session took from files that its definition only names: another file of the same name may
-/// have been in its place when another session was recorded.
+/// Data that a session took from files which its definition only names: another file of the same
+/// name may have been in its place when another session was recorded.
 struct SessionFiles {
   std::string session;  // name of the file
   /// Bones by condition and number of the procedure; equal bones are one (StudyBones).

@@ -218,7 +218,7 @@ TEST(SessionResumeTest, AnswersOfAPassThatLeftNoSamplesAreDropped) {
   EXPECT_TRUE(fs::exists(folder / "a.h5.partial.damaged"));
 }
 
-/// The same ticks without a pass.
+/// Ticks as before, without a pass.
 std::vector<Sample> ticks_between_passes(std::uint64_t from, std::uint64_t to) {
   std::vector<Sample> samples = ticks(from, to);
   for (Sample& sample : samples) {
