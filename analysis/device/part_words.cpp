@@ -5,7 +5,7 @@
 namespace haptrial::analysis {
 namespace {
 
-std::optional<AngularUnits::Given> given_for(const CertificateRecord& record,
+std::optional<AngularUnits::GivenUnit> given_for(const CertificateRecord& record,
                                              const std::string& unit) {
   return record.of == device::Part::kRotation ? AngularUnits(record.radius).given_for(unit)
                                               : std::nullopt;
