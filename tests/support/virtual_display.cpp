@@ -258,11 +258,6 @@ void VirtualDisplay::ask_to_close(const std::string& title) const {
   x.send(event.xclient.window, NoEventMask, event);
 }
 
-void VirtualDisplay::destroy(const std::string& title) const {
-  const X x;
-  x.get<decltype(&XDestroyWindow)>("XDestroyWindow")(x.display(), x.find(title));
-}
-
 void VirtualDisplay::move_pointer(int px, int py) const {
   const X x;
   x.get<decltype(&XWarpPointer)>("XWarpPointer")(x.display(), None, x.root(), 0, 0, 0, 0, px, py);

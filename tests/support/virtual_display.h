@@ -44,7 +44,6 @@ class VirtualDisplay {
   void press_button(const std::string& title, unsigned button) const;  // and hold it
   void release_button(const std::string& title, unsigned button) const;
   void ask_to_close(const std::string& title) const;  // as a window manager does
-  void destroy(const std::string& title) const;       // as another program may
   void move_pointer(int x, int y) const;              // [px]
 
  private:

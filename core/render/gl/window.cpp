@@ -54,18 +54,6 @@ void outlive_display() {
   }
 }
 
-/// Xlib also calls exit() on an error, such as that of a window which another program destroyed.
-/// GLFW leaves Xlib's handler behind when it has made a window, so that this is called after it.
-void outlive_window() {
-  using OnError = int (*)(void* display, void* error);
-  if (const auto on_error = loaded<OnError (*)(OnError)>("XSetErrorHandler")) {
-    on_error([](void*, void*) {
-      display_lost = true;
-      return 0;
-    });
-  }
-}
-
 /// GLFW is started for one window and ended with it.
 class Library {
  public:
@@ -222,7 +210,6 @@ void Window::Impl::open(const WindowOptions& options) {
   double y = 0.0;
   glfwGetCursorPos(window.get(), &x, &y);
   point_at(x, y);
-  outlive_window();
   glfwGetError(nullptr);  // an answer that is not needed (swap interval) is no failure
 }
 

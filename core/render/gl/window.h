@@ -49,8 +49,7 @@ class Window {
   /// Rate of the monitor [Hz]; 0 if it does not say.
   double refresh_rate() const noexcept;
 
-  /// Takes what happened to window, keys and mouse. @throws RunError when the display or
-  /// the window is gone
+  /// Takes what happened to window, keys and mouse. @throws RunError when the display is gone
   void poll();
   /// Shows what was drawn and comes back when the display has it: with refresh lock, at a refresh.
   void swap();
