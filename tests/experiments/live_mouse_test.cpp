@@ -108,18 +108,6 @@ class LiveMouseTest : public testing::Test {
   std::optional<protocols::ForceDefinition> definition_;
 };
 
-TEST_F(LiveMouseTest, AWindowThatAnotherProgramDestroysStopsTheScreenAlone) {
-  LiveCommand session("run '" + path("study.toml") + "' --subject S02 --out '" + path("out") +
-                      "' --device mouse --window --console");
-  ConsolePerson person(session.line_after("console: "));
-  ASSERT_TRUE(person.sees("instructions")) << session.errors();
-  ASSERT_TRUE(person.ask("start"));
-  display_->destroy(definition_->screen.title);
-  const CommandResult ended = session.wait();
-  EXPECT_THAT(ended.output + ended.errors, testing::HasSubstr("the screen has stopped"));
-  EXPECT_EQ(ended.status, 1) << ended.errors;
-}
-
 TEST_F(LiveMouseTest, ThePointerLeadsTheToolAndAPressIsAForce) {
   const std::string title = definition_->screen.title;
   LiveCommand session("run '" + path("study.toml") + "' --subject S01 --out '" + path("out") +

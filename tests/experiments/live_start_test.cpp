@@ -1,7 +1,10 @@
 // `haptrial start`: the checklist, the session behind it with its backup, and the emergency card.
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -87,6 +90,42 @@ TEST_F(LiveStartTest, TheChecklistSaysWhoComesAndWhatIsMissing) {
   EXPECT_FALSE(nlohmann::json::parse(begun.output)["ready"]);
   EXPECT_EQ(check_of(begun, "participant")["state"], "broken");
   EXPECT_EQ(start("--check --subject 'P 5'").status, 2) << "no identifier";
+}
+
+TEST_F(LiveStartTest, APedalThatIsNotThereIsSaidBeforeTheSession) {
+  const fs::path pedal = folder_ / "pedal";
+  test::write_text(folder_ / "study.toml", R"([experiment]
+protocol = "trials"
+name = "pedal"
+[design]
+participants = 1
+[[stages]]
+name = "wait"
+until = { time = 1.0 }
+[response]
+question = "Now?"
+choices = [{ value = "yes", pedal = 0.5 }, { value = "no", keys = ["N"] }]
+[[blocks]]
+name = "one"
+trials = 1
+[observer]
+decides = "yes"
+[pedal]
+input = ")" + pedal.string() + R"("
+axis = "ABS_GAS"
+released = 0
+pressed = 940
+)");
+  const std::string checked = "--check --json --device mouse --window";
+  const nlohmann::json missing = check_of(start(checked), "pedal");
+  EXPECT_EQ(missing["state"], "broken");
+  EXPECT_THAT(missing["found"].get<std::string>(), HasSubstr("No such file"));
+
+  ASSERT_EQ(::mkfifo(pedal.c_str(), 0600), 0);
+  const int writer = ::open(pedal.c_str(), O_RDWR | O_CLOEXEC);
+  ASSERT_GE(writer, 0);
+  EXPECT_EQ(check_of(start(checked), "pedal")["state"], "ready");
+  ::close(writer);
 }
 
 TEST_F(LiveStartTest, AnInterruptDoesNotWaitForAnAnswer) {

@@ -11,15 +11,12 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
-#include "tests/experiments/command.h"
 #include "tests/experiments/session_runs.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/event_records.h"
@@ -30,7 +27,6 @@
 namespace haptrial::experiments::pedal_session_test {
 namespace {
 
-namespace fs = std::filesystem;
 using record::ResponseSource;
 using testing::Contains;
 using testing::HasSubstr;
@@ -99,29 +95,6 @@ class LivePedalTest : public testing::Test {
   test::TemporaryFolder folder_;
   Experiment experiment_;
 };
-
-TEST_F(LivePedalTest, TheChecklistBeforeASessionLooksForThePedal) {
-  const std::string study = folder_ / "study.toml";
-  test::write_text(study, test::felt_or_not("choices = [{ value = \"felt\", pedal = 0.5 }, "
-                                            "{ value = \"not\", keys = [\"N\"] }]\n") +
-                              table());
-  const auto pedal_with = [&](const std::string& device) {
-    const auto printed =
-        test::run_command("haptrial start '" + study + "' --check --json --device " + device +
-                          " --out '" + (folder_ / "out").string() + "'");
-    for (const auto& check : nlohmann::json::parse(printed.output)["checks"]) {
-      if (check["what"] == "pedal") {
-        return check["state"].get<std::string>() + ": " + check["found"].get<std::string>();
-      }
-    }
-    return std::string("none");
-  };
-  EXPECT_THAT(pedal_with("open-haptics"), testing::StartsWith("ready"));
-  EXPECT_EQ(pedal_with("virtual"), "none");
-  fs::remove(folder_ / "pedal");
-  EXPECT_THAT(pedal_with("open-haptics"),
-              testing::AllOf(testing::StartsWith("broken"), testing::HasSubstr("No such file")));
-}
 
 TEST_F(LivePedalTest, AnswersAreGivenByFootAndALossIsRecorded) {
   const RestlessFoot foot(folder_ / "pedal");

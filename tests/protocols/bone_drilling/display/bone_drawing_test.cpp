@@ -132,8 +132,8 @@ TEST(BoneDrawingTest, WordsOfAnInjurySayWhenItWas) {
     view.drawing->draw(seen);
     return view.context.read().rgb;
   };
-  EXPECT_EQ(picture(12.5, 2.0), picture(14.5, 4.0)) << "both were after 0:10";
-  EXPECT_NE(picture(12.5, 2.0), picture(72.5, 2.0));
+  EXPECT_EQ(picture(13.5, 3.5), picture(15.0, 5.0)) << "both were after 0:10";
+  EXPECT_NE(picture(13.5, 3.5), picture(73.5, 3.5));
 }
 
 }  // namespace
