@@ -109,7 +109,7 @@ struct BegunWork {
   std::string work;
 };
 
-/// Whose drilling it was, of which bone, and how it ended.
+/// Identity of a drilling: who drilled, which bone, and how it ended.
 struct ProcedureIdentity {
   std::string session;  // name of the file
   std::string participant;
