@@ -249,7 +249,7 @@ TEST(StudyMixed, FitsTheTermsThatTheDesignHas) {
   EXPECT_THAT(notations(between), ElementsAre("(1 | subject)", "(1 | subject:block)"));
 }
 
-// The same block numbers for everybody, and conditions that change within a block.
+// Everybody has the same block numbers, and conditions change within a block.
 TEST(StudyMixed, KnowsABlockByItsParticipant) {
   auto scores = design({});
   for (auto& score : scores) {

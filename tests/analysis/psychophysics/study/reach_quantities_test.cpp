@@ -299,7 +299,7 @@ TEST(PursuitResponseTest, FrequenciesThatTheTargetLacksHaveNoGain) {
   EXPECT_TRUE(std::isnan(part.response[0].real()));  // the other sine leaks into it
 }
 
-/// What the hand does across the target's line is no error of the pursuit.
+/// Movement across the target's line is no error of the pursuit.
 TEST(PursuitResponseTest, OnlyDirectionsCountInWhichTheTargetMoves) {
   std::vector<Eigen::Vector3d> target, hand;
   for (int tick = 0; tick < 1000; ++tick) {

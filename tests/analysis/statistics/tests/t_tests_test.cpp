@@ -271,7 +271,7 @@ TEST(BayesFactorTest, ItsMeanWithoutAnEffectIsOne) {
     for (double t = -60.0; t <= 60.0; t += kStep) {
       mean += kStep * gsl_ran_tdist_pdf(t, 15.0) * *bayes_factor(t, 15.0, 16.0, tail);
     }
-    // What lies beyond is the share of the prior with effects above 15.
+    // The rest is the share of the prior with effects above 15.
     EXPECT_NEAR(mean, 1.0, 0.05);
     EXPECT_LT(mean, 1.0);
   }
