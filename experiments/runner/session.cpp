@@ -29,6 +29,7 @@
 #include "protocols/definition/definition.h"
 #include "protocols/definition/groups.h"
 #include "protocols/definition/speech_options.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/interface/session_task.h"
 #include "protocols/interface/trials.h"
 #include "protocols/tutoring/tutored_trials.h"
@@ -405,7 +406,8 @@ void Session::note_setting() {
     record_.event(kDevicesEvent, devices_text(choices_of(request_), devices));
   }
   if (!d_.language.empty()) {
-    record_.event("language", d_.language);
+    record_.event(protocols::kLanguageEvent, d_.language);
+    record_.event(protocols::kLanguageTextsEvent, d_.language_texts);
   }
   if (d_.display.mirrored) {
     record_.event("mirrored", "x of W runs to the left: the participant is left-handed");

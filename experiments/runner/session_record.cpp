@@ -78,7 +78,7 @@ void SessionRecord::open(const std::string& text) {
   if (before_.rows > 0) {
     tell_what_was_kept();
   }
-  event(before_.rows > 0 ? "session_resumed" : "session_start", text);
+  event(before_.rows > 0 ? record::kSessionResumed : "session_start", text);
   note_plan();
   writer_.note_counts({0, 0, 0});
   keep_definition();

@@ -94,6 +94,7 @@ void check_translations(const Translations& translations, Experiment& experiment
   }
   experiment.untranslated = missing_translations(translations, experiment.shown);
   experiment.definition->language = translations.language;
+  experiment.definition->language_texts = translations.file_text;
 }
 
 }  // namespace

@@ -77,15 +77,24 @@ std::string time_words(const SessionTimes& times) {
                      counted(times.sessions, "session", "sessions"));
 }
 
-std::string lab_time(const SessionTimes& times, int sessions, std::optional<double> setup) {
+namespace {
+
+std::string long_time_text(double seconds) {
   constexpr double kHour = 3600.0;
+  return seconds < kHour ? minutes_text(seconds) + " minutes"
+                         : fmt::format("{:.1f} hours", seconds / kHour);
+}
+
+}  // namespace
+
+std::string lab_time(const SessionTimes& times, int sessions, std::optional<double> setup) {
   constexpr double kMinute = 60.0;
-  std::string text =
-      fmt::format("a session takes {}; {} take {:.1f} hours", time_words(times),
-                  counted(sessions, "session", "sessions"), sessions * times.mean / kHour);
+  std::string text = fmt::format("a session takes {}; {} {}", time_words(times),
+                                 counted(sessions, "session takes", "sessions take"),
+                                 long_time_text(sessions * times.mean));
   if (setup) {
-    text += fmt::format(", {:.1f} in the lab with {:g} minutes between them",
-                        sessions * (times.mean + *setup * kMinute) / kHour, *setup);
+    text += fmt::format(", {} in the lab with {:g} minutes between them",
+                        long_time_text(sessions * (times.mean + *setup * kMinute)), *setup);
   }
   return text;
 }

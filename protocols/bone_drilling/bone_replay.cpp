@@ -15,6 +15,7 @@
 #include "protocols/bone_drilling/live_tuning.h"
 #include "protocols/bone_drilling/replay_difference.h"
 #include "protocols/bone_drilling/replayed_handpiece.h"
+#include "protocols/interface/recorded_definition.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -28,7 +29,10 @@ BoneDefinition definition_of(const record::SessionReader& reader) {
                     reader.path().string()));
   }
   try {
-    return parse_bone_definition(reader.info().definition, reader.info().definition_name);
+    Table root = recorded_definition(reader, 0);
+    BoneDefinition d = read_bone_definition(root, reader.info().definition_name, nullptr);
+    root.finish();
+    return d;
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
                                  reader.path().string(), error.what()));

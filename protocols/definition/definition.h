@@ -104,6 +104,7 @@ struct Definition {
   SessionTexts texts;
   haptrial::questions::PagePlan pages;  // beside the trials
   std::string language;                 // of the texts; empty: the definition's own
+  std::string language_texts;           // the file with them; empty: there is none
   // Parameters of the devices that may take the virtual one's place; a table that is left out has
   // its defaults.
   device::VendorSetups vendor{};

@@ -96,6 +96,13 @@ Translations translations_for(const fs::path& definition, const std::string& lan
   return translations;
 }
 
+Translations recorded_translations(const std::string& language, std::string text,
+                                   std::string_view session) {
+  Translations translations = parse_translations(std::move(text), session, language);
+  translations.by_text = program_words(language);
+  return translations;
+}
+
 namespace {
 
 using GermanText = std::pair<const char*, const char*>;

@@ -29,6 +29,12 @@ std::vector<std::string> languages_of(const std::filesystem::path& definition);
 /// @throws InputError if there is neither, or the file is wrong
 Translations translations_for(const std::filesystem::path& definition, const std::string& language);
 
+/// The same from the text of that file, which a session keeps; the program's own words alone if it
+/// is empty.
+/// @param session  that sentences name  @throws InputError if the text is wrong
+Translations recorded_translations(const std::string& language, std::string text,
+                                   std::string_view session);
+
 /// The words of the program itself that participants read, in another language, by the English
 /// ones; empty for a language that the program does not speak.
 std::map<std::string, std::string, std::less<>> program_words(std::string_view language);

@@ -9,15 +9,19 @@
 #include "core/base/error.h"
 #include "core/record/read/tick_rows.h"
 #include "protocols/force_training/recorded_pass.h"
+#include "protocols/interface/recorded_definition.h"
 
 namespace haptrial::protocols {
 namespace {
 
 constexpr double kSame = 1e-9;  // [m] and [N]
 
-ForceDefinition definition_of(const record::SessionReader& reader) {
+ForceDefinition definition_of(const record::SessionReader& reader, int trial) {
   try {
-    return parse_force_definition(reader.info().definition, reader.info().definition_name);
+    Table root = recorded_definition(reader, trial);
+    ForceDefinition d = read_force_definition(root, reader.info().definition_name, nullptr);
+    root.finish();
+    return d;
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",
                                  reader.path().string(), error.what()));
@@ -88,7 +92,7 @@ render::Image below(const render::Image& upper, const render::Image& lower) {
 
 ForceReplay::ForceReplay(const std::filesystem::path& session, int trial,
                          std::optional<record::Phase> phase)
-    : definition_(definition_of(record::SessionReader(session))),
+    : definition_(definition_of(record::SessionReader(session), trial)),
       renderer_(definition_.display),
       panel_context_(definition_.display.width, kPanelHeight),
       panel_(panel_context_.gl(), definition_.display, definition_.display.width, kPanelHeight) {

@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/questions/question_kind.h"
 #include "core/record/read/session_reader.h"
@@ -16,6 +15,7 @@
 #include "core/record/rows/trial_rows.h"
 #include "core/render/gl/offscreen.h"
 #include "protocols/interface/protocol.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/psychophysics/defined_trials.h"
 
@@ -94,7 +94,7 @@ class TrialReplay {
  private:
   std::unique_ptr<StudiedDefinition> read_definition() const {
     try {
-      Table root = Table::parse(reader_.info().definition, reader_.info().definition_name);
+      Table root = recorded_definition(reader_, request_.trial);
       auto read = protocol_.read(root, reader_.info().definition_name, nullptr);
       return std::unique_ptr<StudiedDefinition>(dynamic_cast<StudiedDefinition*>(read.release()));
     } catch (const InputError& error) {

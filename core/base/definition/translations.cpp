@@ -51,8 +51,14 @@ const std::string* Translations::of(std::string_view key, std::string_view text)
 }
 
 Translations load_translations(const std::filesystem::path& file, std::string_view language) {
-  Translations translations{std::string(language), file.string()};
-  take_texts(parse_toml(file_text(file), file.string()), "", translations);
+  return parse_translations(file_text(file), file.string(), language);
+}
+
+Translations parse_translations(std::string text, std::string_view file_name,
+                                std::string_view language) {
+  Translations translations{std::string(language), std::string(file_name)};
+  take_texts(parse_toml(text, translations.file), "", translations);
+  translations.file_text = std::move(text);
   return translations;
 }
 

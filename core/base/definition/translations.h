@@ -23,6 +23,7 @@ struct Translations {
   std::string file;                                           // that by_key is from
   std::map<std::string, std::string, std::less<>> by_key{};   // of this definition
   std::map<std::string, std::string, std::less<>> by_text{};  // of any: the program's own words
+  std::string file_text{};                                    // the whole file, as it was read
 
   /// The translation of a text: by its key, or else by its words. Null: there is none.
   const std::string* of(std::string_view key, std::string_view text) const;
@@ -38,6 +39,10 @@ struct Translations {
 ///
 /// @throws InputError if it cannot be read, is not TOML, or has a value that is not a text
 Translations load_translations(const std::filesystem::path& file, std::string_view language);
+/// Reads the text of such a file, which a session keeps. @throws InputError as above
+/// @param file_name  that sentences name
+Translations parse_translations(std::string text, std::string_view file_name,
+                                std::string_view language);
 
 /// Sentences for keys of the file that the definition does not show, with the nearest that it does.
 std::vector<std::string> unknown_translations(const Translations& translations,

@@ -74,6 +74,8 @@ struct PassRow {
   std::int32_t attempt{1};  // from 1; an aborted trial that was queued again has 2, 3, ...
 };
 
+inline constexpr const char* kSessionResumed = "session_resumed";  // a kind: a run that goes on
+
 struct EventRow {
   std::int64_t time_ns{0};
   std::string kind;  // "session_start", "break", "overrun", "fault", ...

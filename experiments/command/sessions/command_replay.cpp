@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "experiments/screen/video.h"
 #include "experiments/studies/recorded_kinds.h"
 #include "experiments/studies/registry.h"
+#include "protocols/interface/recorded_definition.h"
 
 namespace haptrial::experiments {
 namespace fs = std::filesystem;
@@ -72,16 +72,18 @@ class PictureFolder {
   int count_{0};
 };
 
-/// Which languages the participant read, if not that of the definition: a session file has the
-/// words of its definition alone, so pictures show those.
-std::vector<std::string> unshown_languages(const fs::path& file) {
-  std::vector<std::string> languages;
+/// Language that the participant read, if the file does not hold its texts, as those of version 0.2
+/// and before. Pictures show what the definition has then.
+std::string unshown_language(const fs::path& file) {
+  std::string language;
   for (const record::EventRow& event : record::SessionReader(file).events()) {
-    if (event.kind == "language" && std::ranges::find(languages, event.text) == languages.end()) {
-      languages.push_back(event.text);
+    if (event.kind == protocols::kLanguageEvent) {
+      language = event.text;
+    } else if (event.kind == protocols::kLanguageTextsEvent) {
+      return "";
     }
   }
-  return languages;
+  return language;
 }
 
 int replay(const ReplayOptions& options) {
@@ -139,11 +141,10 @@ int replay(const ReplayOptions& options) {
     pictures->keep();
     lines.push_back("pictures: " + options.frames);
   }
-  if (const auto languages = unshown_languages(options.file);
-      request.pictures && !languages.empty()) {
-    lines.push_back(
-        fmt::format("words: as the definition has them; the participant read them in {}",
-                    fmt::join(languages, ", ")));
+  if (const std::string language = unshown_language(options.file);
+      request.pictures && !language.empty()) {
+    lines.push_back(fmt::format(
+        "words: as the definition has them; the participant read them in {}", language));
   }
   for (const std::string& line : lines) {
     fmt::print("{}\n", line);
