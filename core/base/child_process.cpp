@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <system_error>
 #include <utility>
 
@@ -212,6 +213,36 @@ bool write_fully(int to, const void* bytes, std::size_t count) noexcept {
     count -= static_cast<std::size_t>(done);
   }
   return true;
+}
+
+std::size_t read_fully(int from, void* bytes, std::size_t count) noexcept {
+  char* at = static_cast<char*>(bytes);
+  std::size_t came = 0;
+  while (came < count) {
+    const ssize_t now = read(from, at + came, count - came);
+    if (now < 0 && errno == EINTR) {
+      continue;
+    }
+    if (now <= 0) {
+      break;
+    }
+    came += static_cast<std::size_t>(now);
+  }
+  return came;
+}
+
+bool is_installed(std::string_view program) {
+  const char* path = std::getenv("PATH");
+  const std::string folders = path != nullptr ? path : "/usr/bin:/bin";
+  for (std::size_t from = 0; from <= folders.size();) {
+    const std::size_t to = std::min(folders.find(':', from), folders.size());
+    const auto file = std::filesystem::path(folders.substr(from, to - from)) / program;
+    if (access(file.c_str(), X_OK) == 0) {
+      return true;
+    }
+    from = to + 1;
+  }
+  return false;
 }
 
 void read_pieces(int from, const std::function<bool(std::string_view)>& take,

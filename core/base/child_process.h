@@ -70,6 +70,12 @@ class ChildProcess {
 /// @returns whether all bytes went; no, without a signal, if the reader of a pipe has left.
 bool write_fully(int to, const void* bytes, std::size_t count) noexcept;
 
+/// @returns how many bytes came; fewer than `count` if the other end was closed.
+std::size_t read_fully(int from, void* bytes, std::size_t count) noexcept;
+
+/// Whether a program of this name is found along PATH.
+bool is_installed(std::string_view program);
+
 /// Takes what comes, piece by piece, until the other end is closed or `take` returns false.
 /// @param go_on  asked ten times a second; false ends the reading. Empty: never asked
 void read_pieces(int from, const std::function<bool(std::string_view)>& take,

@@ -31,6 +31,7 @@ struct Question {
   double step{1.0};                    // between neighbouring numbers, of a kind that has steps
   std::string low_end, high_end;       // words at the ends of a scale; may be empty
   std::string picture;                 // PNG file, as the definition names it; empty: none
+  std::string video;                   // likewise, in the picture's place
   std::size_t most_bytes{kTextBytes};  // of typed words
 };
 

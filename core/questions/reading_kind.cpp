@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +9,16 @@
 
 namespace haptrial::questions {
 namespace {
+
+const Schema<Question>& video_schema() {
+  static const auto schema =
+      Schema<Question>()
+          .text("video", &Question::video,
+                "Video in the place of a picture, a file relative to the definition, which plays "
+                "once before the page can be left")
+          .otherwise("none");
+  return schema;
+}
 
 /// A text that is read and gone on from: nothing is asked, and nothing is recorded.
 class ReadingKind final : public QuestionKind {
@@ -30,6 +42,11 @@ class ReadingKind final : public QuestionKind {
   void read(Table& table, Question& question) const override {
     title_schema().read(table, question);
     reading_schema().read(table, question);
+    video_schema().read(table, question);
+    if (!question.video.empty() && !question.picture.empty()) {
+      table.reject("video", fmt::format("\"{}\" beside a picture", question.video),
+                   "a video or a picture");
+    }
   }
 
   KeyEffect press(const Question&, const KeyPress& key, AnswerDraft&) const noexcept override {

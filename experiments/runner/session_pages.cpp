@@ -8,18 +8,31 @@
 #include <memory>
 #include <utility>
 
+#include "analysis/files/sha256.h"
+#include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/base/random.h"
 #include "core/questions/question_kind.h"
 #include "core/questions/question_kinds.h"
 #include "core/render/gl/image.h"
+#include "core/sound/cue.h"
 #include "experiments/screen/screen.h"
+#include "experiments/screen/video_player.h"
 
 namespace haptrial::experiments {
 namespace {
 
 using record::AnsweredAt;
 using record::PageTime;
+
+constexpr double kVideoShare = 0.7;  // most of the screen's height
+constexpr int kVideoWidth = 1280;    // that pictures are made smaller for [px]
+constexpr int kVideoHeight = 720;
+
+std::string card_of(const protocols::Definition& definition) {
+  const sound::CueSet* sounds = definition.sounds();
+  return sounds != nullptr ? sounds->device : sound::CueSet().device;
+}
 
 AnsweredAt source_of(RequestSource by) {
   return by == RequestSource::kConsole ? AnsweredAt::kConsole : AnsweredAt::kTerminal;
@@ -207,6 +220,7 @@ SessionPages::PageOutcome SessionPages::ask(const Place& place,
     input.show_earlier({earlier->value, earlier->text});
   }
   AskedItem asked = input.asked(++asked_);
+  const std::unique_ptr<VideoPlayer> video = video_of(item);
   std::shared_ptr<const render::Image> picture;
   if (!item.picture.empty()) {
     const auto file = p_.request.definition_folder / item.picture;
@@ -217,6 +231,10 @@ SessionPages::PageOutcome SessionPages::ask(const Place& place,
   const auto draw = [&] {
     render::TextPage shown = input.page(picture);
     shown.progress = progress_of(place.page, item);
+    if (video) {
+      shown.picture_share = kVideoShare;
+      shown.hint = video->is_over() ? shown.hint : "";
+    }
     p_.pacing.show_page(std::move(shown),
                         item.title.empty() ? item.text : item.title + "\n" + item.text);
   };
@@ -232,8 +250,14 @@ SessionPages::PageOutcome SessionPages::ask(const Place& place,
       draw();
     }
     p_.pacing.wait_a_little("page");
+    const bool plays = video && !video->is_over();
+    if (plays && picture != video->picture()) {
+      picture = video->picture();
+      draw();
+    }
     for (const render::KeyPress& key : p_.keys.pressed()) {
-      if (!input.answer() && !input.goes_back() && input.press(key)) {
+      const bool counts = !plays || key.key == render::KeyPress::kBackspace;
+      if (counts && !input.answer() && !input.goes_back() && input.press(key)) {
         source = AnsweredAt::kWindow;
         draw();
       }
@@ -249,10 +273,36 @@ SessionPages::PageOutcome SessionPages::ask(const Place& place,
   p_.controller.status().asked = {};
   p_.keys.set_open(false);
   p_.pacing.clear_text();
+  if (video) {
+    p_.record.event("video", fmt::format("{}: {:.1f} of {:.1f} s were shown{}{}", item.video,
+                                         video->played(), video->facts().duration,
+                                         video->silence().empty() ? "" : ", without sound: ",
+                                         video->silence()));
+  }
   if (input.answer()) {
     answer = *input.answer();
   }
   return input.answer() ? PageOutcome::kOn : back ? PageOutcome::kBack : PageOutcome::kEnd;
+}
+
+/// Null: the item has none, or nobody would see it.
+std::unique_ptr<VideoPlayer> SessionPages::video_of(const questions::Question& item) {
+  if (item.video.empty()) {
+    return nullptr;
+  }
+  try {
+    if (p_.screen == nullptr) {
+      throw RunError("the session has no window for the participant");
+    }
+    const auto file = p_.request.definition_folder / item.video;
+    auto video = std::make_unique<VideoPlayer>(file, kVideoWidth, kVideoHeight, card_of(d_));
+    p_.record.event("video",
+                    fmt::format("{}: sha256={}", item.video, analysis::sha256_of_file(file)));
+    return video;
+  } catch (const std::runtime_error& error) {
+    p_.record.event("video", fmt::format("{}: not shown: {}", item.video, error.what()));
+    return nullptr;
+  }
 }
 
 /// Takes answers from elsewhere than the window. An answer that is not allowed is refused with a

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 namespace haptrial::experiments {
 
 class Screen;
+class VideoPlayer;
 
 /// Shows the pages of a definition and records what is answered: in the participant's window, on
 /// the console or in the terminal alike; without any of them, and on a simulated clock, a virtual
@@ -63,6 +65,7 @@ class SessionPages {
   void keep(const questions::Question& item, const questions::Answer& answer, record::AnswerRow row,
             bool changed);
   std::optional<record::AnswerRow> answer_to(const record::AnswerRow& asked) const;
+  std::unique_ptr<VideoPlayer> video_of(const questions::Question& item);
   void take_answers(PageInput& input, record::AnsweredAt& source);
   bool person_answers() const;
 

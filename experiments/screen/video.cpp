@@ -22,25 +22,12 @@ constexpr const char* kProgram = "ffmpeg";
 
 std::string reason(int error) { return std::system_category().message(error); }
 
-bool installed() {
-  const char* path = std::getenv("PATH");
-  std::string folders = path != nullptr ? path : "/usr/bin:/bin";
-  for (std::size_t from = 0; from <= folders.size();) {
-    const std::size_t to = std::min(folders.find(':', from), folders.size());
-    if (access((fs::path(folders.substr(from, to - from)) / kProgram).c_str(), X_OK) == 0) {
-      return true;
-    }
-    from = to + 1;
-  }
-  return false;
-}
-
 const fs::path& checked(const fs::path& file) {
   if (file.extension() != ".mp4") {
     throw InputError(
         fmt::format("video '{}' is not a video by its name; allowed: .mp4", file.string()));
   }
-  if (!installed()) {
+  if (!is_installed(kProgram)) {
     throw RunError(
         "ffmpeg is not installed, so no video can be written; install Debian's package ffmpeg, or "
         "write pictures with --frames");

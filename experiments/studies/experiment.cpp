@@ -9,10 +9,12 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
+#include "experiments/screen/video_player.h"
 #include "experiments/studies/curve_analysis.h"
 #include "experiments/studies/power_plan.h"
 #include "experiments/studies/registry.h"
@@ -74,12 +76,19 @@ Experiment read(Table& root, std::string_view file_name, const std::filesystem::
   return experiment;
 }
 
-/// The pictures of pages, before somebody looks at them.
+/// The pictures and videos of pages, before somebody looks at them.
 void check_pictures(const protocols::Definition& definition, const std::filesystem::path& folder) {
   for (const questions::Page& page : definition.pages.pages) {
     for (const questions::Question& item : page.items) {
       if (!item.picture.empty()) {
         static_cast<void>(render::read_png(folder / item.picture));
+      }
+      if (!item.video.empty()) {
+        try {
+          static_cast<void>(video_facts(folder / item.video));
+        } catch (const RunError&) {
+          // ffmpeg is not there, which dry runs do without: warnings_of() says so.
+        }
       }
     }
   }
@@ -95,6 +104,19 @@ void check_translations(const Translations& translations, Experiment& experiment
   experiment.untranslated = missing_translations(translations, experiment.shown);
   experiment.definition->language = translations.language;
   experiment.definition->language_texts = translations.file_text;
+}
+
+void warn_of_videos(const protocols::Definition& definition, std::vector<std::string>& warnings) {
+  for (const questions::Page& page : definition.pages.pages) {
+    for (const questions::Question& item : page.items) {
+      if (!item.video.empty() && !is_installed("ffmpeg")) {
+        warnings.push_back(
+            fmt::format("pages.{}.video: ffmpeg is not installed on this machine, so participants "
+                        "would not see it; install Debian's package ffmpeg",
+                        page.name));
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -154,6 +176,7 @@ void warn_of_missing_axes(const protocols::Definition& d, std::vector<std::strin
 std::vector<std::string> warnings_of(const Experiment& experiment) {
   std::vector<std::string> warnings = experiment.definition->warnings();
   warn_of_missing_axes(*experiment.definition, warnings);
+  warn_of_videos(*experiment.definition, warnings);
   std::ranges::move(protocols::group_warnings(experiment.definition->groups),
                     std::back_inserter(warnings));
   for (std::string& warning : protocols::button_warnings(*experiment.definition)) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "core/base/file_text.h"
 #include "core/record/read/integrity.h"
 #include "core/record/read/session_reader.h"
 #include "tests/experiments/console_person.h"
@@ -116,6 +117,37 @@ TEST_F(LiveWindowKeysTest, SteerWhereTheDefinitionSaysSo) {
   EXPECT_THAT(
       events(closed ? "out/S01.h5" : "out/S01.h5.partial"),
       ElementsAre("start by the window", "emergency_stop by the window", "clear by the window"));
+}
+
+TEST_F(LiveWindowKeysTest, DoNotLeaveAPageBeforeItsVideoIsOver) {
+  const CommandResult made =
+      test::run_command("ffmpeg -loglevel error -f lavfi -i testsrc=d=1.6:s=320x240 '" +
+                        (folder_ / "intro.mp4").string() + "'");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const std::string command = run("--console");
+  test::write_text(folder_ / "study.toml",
+                   file_text(folder_ / "study.toml") +
+                       "[pages]\nbefore = [\"intro\"]\n[pages.intro]\n"
+                       "text = \"This is what you do.\"\nvideo = \"intro.mp4\"\n");
+  LiveCommand session(command);
+  ConsolePerson person(session.line_after("console: "));
+  ASSERT_TRUE(person.sees("page")) << session.errors();
+  std::vector<std::string> told;
+  EXPECT_TRUE(session.reaches([&] {
+    display_->try_key("haptrial", VirtualDisplay::kEnter);
+    told.clear();
+    for (const auto& event : record::SessionReader(folder_ / "out/S01.h5.partial").events()) {
+      if (event.kind == "video") {
+        told.push_back(event.text);
+      }
+    }
+    return told.size() == 2;
+  })) << session.errors();
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_THAT(told[0], testing::MatchesRegex("intro.mp4: sha256=[0-9a-f]+"));
+  EXPECT_EQ(told[1], "intro.mp4: 1.6 of 1.6 s were shown") << "though Enter was pressed all along";
+  press(VirtualDisplay::kEscape);
+  EXPECT_EQ(session.wait().status, 1);
 }
 
 TEST_F(LiveWindowKeysTest, BeginASessionWithoutAnExperimenter) {

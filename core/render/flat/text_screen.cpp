@@ -18,10 +18,9 @@ constexpr double kGap = 0.05;
 constexpr double kColumn = 1.45;  // longest line: longer ones are tiring to read
 constexpr double kShrink = 0.9;   // from one try to the next
 constexpr double kSmallest = 0.3;
-constexpr double kPicture = 0.4;  // most of the screen's height that a picture takes
-constexpr double kFigure = 0.3;   // of the screen's height
-constexpr double kTick = 0.03;    // of a scale
-constexpr double kLine = 1.35;    // from choice to choice, of their height
+constexpr double kFigure = 0.3;  // of the screen's height
+constexpr double kTick = 0.03;   // of a scale
+constexpr double kLine = 1.35;   // from choice to choice, of their height
 const Colour kUrgent{0.80, 0.08, 0.08};
 
 }  // namespace
@@ -63,7 +62,12 @@ double TextScreen::column() const {
 }
 
 double TextScreen::picture_height(const TextPage& page) const {
-  return page.picture ? std::min<double>(page.picture->height, kPicture * height_) : 0.0;
+  if (!page.picture) {
+    return 0.0;
+  }
+  const double shape = static_cast<double>(page.picture->height) / page.picture->width;
+  return std::min({static_cast<double>(page.picture->height), page.picture_share * height_,
+                   shape * (width_ - 2.0 * margin())});
 }
 
 double TextScreen::figure_height() const { return kFigure * height_; }

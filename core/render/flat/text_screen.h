@@ -19,6 +19,7 @@ struct TextPage {
   std::string hint;                        // at the bottom: "Press the button to go on"
   std::optional<double> countdown;         // shown as minutes and seconds [s]
   std::shared_ptr<const Image> picture{};  // between title and text; null: none
+  double picture_share{0.4};               // most of the screen's height that it takes
   questions::AnswerView answer{};          // below the text
   bool hint_is_urgent{false};              // a key did nothing: red and bold
   std::string progress{};                  // in the upper right corner: "3 / 10"
