@@ -53,16 +53,15 @@ std::string channels_table(std::size_t others) {
          "latency\tn/a\tLATENCY\tn/a\ts\tn/a\twhat the clock read, from the first sample on\n";
 }
 
-std::string channels_sidecar() {
+std::string channels_sidecar(const ExportSession& session) {
   Json json;
   json["reference_frame"] = {
       {"Description", "The frame in which positions and velocities are given"},
       {"Levels",
        {{"world",
-         {{"SpatialAxes", "RUB"},
-          {"Description",
-           "Origin at the centre of the device's workspace, x to the participant's right, y up, z "
-           "towards the participant"}}}}}};
+         {{"SpatialAxes", session.mirrored ? "LUB" : "RUB"},
+          {"Description", fmt::format("Origin at the centre of the device's workspace, {}",
+                                      axes_of(session))}}}}}};
   return json.dump(2) + "\n";
 }
 
@@ -176,7 +175,7 @@ void write_motion(const NewFolder& out, const Session& session, const record::Se
   }
   out.write(stem + "_motion.json", sidecar(session, rate, motion.rows(), others.count()));
   out.write(stem + "_channels.tsv", channels_table(others.count()));
-  out.write(stem + "_channels.json", channels_sidecar());
+  out.write(stem + "_channels.json", channels_sidecar(session.source));
   out.write(fmt::format("{}/motion/{}_events.tsv", session.folder(), session.stem()), events);
 }
 

@@ -246,6 +246,10 @@ std::string dataset_description(std::span<const Session> sessions, const DataSet
   return text_of(json);
 }
 
+static bool any_mirrored(std::span<const Session> sessions) {
+  return std::ranges::any_of(sessions, [](const Session& each) { return each.source.mirrored; });
+}
+
 std::string readme(std::span<const Session> sessions, double motion) {
   std::string text;
   if (any_simulated(sessions)) {
@@ -277,13 +281,17 @@ std::string readme(std::span<const Session> sessions, double motion) {
       "lacks the tick (a row of n/a), so an onset in the events is exact; the column time is what\n"
       "the clock read. A recording of a channel begins with the onset of each sample on the time\n"
       "base of the events; its time_ns is the clock's. World frame: origin at the centre of the\n"
-      "device's workspace, x to the participant's right, y up, z towards the participant.{}\n"
+      "device's workspace, x to the participant's right, y up, z towards the participant.{}{}\n"
       "Reals have 32 bits, as in the session files. Left out on purpose: consent and free notes\n"
       "about participants.\n"
       "Practice passes have practice = 1 in the events, and negative numbers of blocks. "
       "Recordings\n"
       "of pilot sessions have Pilot = true in the .json beside them.\n",
-      experiment_name(sessions.front().source.info), passes, stimuli, moved, force);
+      experiment_name(sessions.front().source.info), passes, stimuli, moved,
+      any_mirrored(sessions) ? "\nIn sessions with the event \"mirrored\", those of left-handed "
+                               "participants, x runs to the\nparticipant's left."
+                             : "",
+      force);
   return text;
 }
 

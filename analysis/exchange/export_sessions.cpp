@@ -69,7 +69,7 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
   for (const auto& file : files) {
     const record::SessionReader reader(file);
     sessions.push_back({file, reader.info(), reader.sample_count(), reader.passes().size(),
-                        !reader.stimuli().empty()});
+                        !reader.stimuli().empty(), record::is_mirrored(reader)});
   }
   refuse_twins(sessions);
   std::sort(sessions.begin(), sessions.end(), [](const auto& a, const auto& b) {
@@ -85,6 +85,13 @@ std::vector<ExportSession> sessions_to_export(std::span<const fs::path> files) {
     session.of = count[session.info.subject];
   }
   return sessions;
+}
+
+const char* axes_of(const ExportSession& session) {
+  return session.mirrored
+             ? "x to the participant's left, as the session was mirrored for a left-handed "
+               "participant, y up, z towards the participant"
+             : "x to the participant's right, y up, z towards the participant";
 }
 
 void refuse_imported(const ExportSession& session, const char* option) {

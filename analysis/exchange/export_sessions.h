@@ -28,11 +28,15 @@ struct ExportSession {
   std::uint64_t samples{0};  // rows of /samples
   std::size_t passes{0};     // 0 of a session that was recovered without any
   bool stimuli{false};       // it has rows of /stimuli
+  bool mirrored{false};      // x of its tables runs to the participant's left
   int number{1};             // of the subject's session, from 1; if the files give a number twice,
                              // the place among the subject's sessions in order of start
   int of{1};                 // how many this subject has
   bool first{true};          // of this subject's here
 };
+
+/// The world frame of a session in words: where x, y and z run.
+const char* axes_of(const ExportSession& session);
 
 /// @returns the sessions by subject, then start.
 /// @throws InputError when there is no file, one cannot be read, or one is given twice.

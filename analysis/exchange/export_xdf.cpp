@@ -41,11 +41,11 @@ std::vector<std::pair<std::string, std::string>> about(const record::SessionInfo
           {"program", fmt::format("haptrial {} ({})", info.program_version, info.program_commit)}};
 }
 
-XdfStream device_stream(const record::SessionInfo& info) {
-  XdfStream stream{"device", "Haptics", XdfFormat::kFloat32, info.rate, {}};
-  stream.description = fmt::format(
-      "{}every tick of the loop; x to the participant's right, y up, z towards the participant",
-      info.simulated ? "SIMULATED PARTICIPANT: " : "");
+XdfStream device_stream(const ExportSession& session) {
+  XdfStream stream{"device", "Haptics", XdfFormat::kFloat32, session.info.rate, {}};
+  stream.description =
+      fmt::format("{}every tick of the loop; {}",
+                  session.info.simulated ? "SIMULATED PARTICIPANT: " : "", axes_of(session));
   for (const ColumnDoc& doc : sample_docs()) {
     if (doc.name != "sequence" && doc.name != "time") {
       stream.channels.push_back({doc.name, doc.unit});
@@ -64,8 +64,8 @@ std::vector<double> values_of(const record::Sample& s) {
 }
 
 /// The stream of a device after the first. @param number  as in /devices
-XdfStream other_stream(const record::SessionInfo& info, std::size_t number) {
-  XdfStream stream = device_stream(info);
+XdfStream other_stream(const ExportSession& session, std::size_t number) {
+  XdfStream stream = device_stream(session);
   stream.name = fmt::format("device_{}", number);
   stream.channels.clear();
   for (const ColumnDoc& doc : docs_of(record::table_of<record::DeviceRow>())) {
@@ -210,9 +210,9 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
   std::size_t streams = 0;
   if (reader.sample_count() > 0) {
     OtherDevices others(reader);
-    const std::uint32_t first = file.add_stream(device_stream(session.info));
+    const std::uint32_t first = file.add_stream(device_stream(session));
     for (std::size_t number = 1; number <= others.count(); ++number) {
-      file.add_stream(other_stream(session.info, number));
+      file.add_stream(other_stream(session, number));
     }
     streams += 1 + others.count();
     write_devices(reader, file, first, others, counter);

@@ -35,11 +35,18 @@ constexpr double kCalmingEnds = 0.5;      // of c [1/s]
 constexpr double kFastest = 80.0;  // change of a share, so that 6 N change by 0.5 N in 1 ms [1/s]
 constexpr double kSlow = 4.0;      // a hand's own movement ends about there [Hz]
 
+/// A step of the encoder must not be felt as a knock.
+double calm_damping(const HandleLoop& loop) {
+  constexpr double kLargestKnock = 0.25;  // [N]
+  const double carried = damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop);
+  const double step = velocity_of_a_step(loop);
+  return step > 0.0 ? std::min(carried, kLargestKnock / step) : carried;
+}
+
 }  // namespace
 
 HandleGuard::HandleGuard(const HandleLoop& loop)
-    : calm_damping_(damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop)),
-      turns_(kSwing, kLongestGap) {
+    : calm_damping_(calm_damping(loop)), turns_(kSwing, kLongestGap) {
   if (!(loop.handle_mass > 0.0 && loop.rate > 0.0) || loop.velocity_window < 2) {
     throw std::invalid_argument(
         "HandleGuard: handle_mass and rate must be above 0 and velocity_window at least 2");

@@ -21,14 +21,15 @@ namespace haptrial::control {
 ///     calming damper      f = -max(1 - s_b, c) b_0 v_h
 ///
 /// so that damping and virtual mass go first, stiffness last, and in place of both comes the
-/// damping b_0 that the bare handle carries (damping_of_bare_handle()), on the part v_h of the
-/// velocity above 4 Hz, so that it does not hold back a hand that moves. What dies away by itself,
-/// as after a knock, is only damped. Turns that are slower than those of 14 Hz may be a tremor, and
-/// a damper still takes energy from them: they bring in the calming damper (c = 1) and take nothing
-/// away, unless they reach 4 N, or 3 N twice, and do not die away. When it has
-/// become quiet, the gains come back within a second. Where the oscillation then comes back, g
-/// stays a little above that value, which is tried anew only slowly. So a heavy hand has all the
-/// gains, a light one what it carries. docs/algorithms/every-hand.md has the figures.
+/// damping b_0 that the bare handle carries (damping_of_bare_handle()), less if a step of the
+/// encoder would make more than 0.25 N of it, on the part v_h of the velocity above 4 Hz, so that
+/// it does not hold back a hand that moves. What dies away by itself, as after a knock, is only
+/// damped. Turns that are slower than those of 14 Hz may be a tremor, and a damper still takes
+/// energy from them: they bring in the calming damper (c = 1) and take nothing away, unless they
+/// reach 4 N, or 3 N twice, and do not die away. When it has become quiet, the gains come back
+/// within a second. Where the oscillation then comes back, g stays a little above that value, which
+/// is tried anew only slowly. So a heavy hand has all the gains, a light one what it carries.
+/// docs/algorithms/every-hand.md has the figures.
 ///
 /// Servo thread, all but the constructor: no allocation, lock, I/O or throw.
 class HandleGuard {

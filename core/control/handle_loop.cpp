@@ -82,6 +82,11 @@ double lightest(double heaviest, Holds holds) {
 
 }  // namespace
 
+double velocity_of_a_step(const HandleLoop& loop) noexcept {
+  const double n = loop.velocity_window;
+  return 1.5 * loop.quantum * loop.rate * n / (n * n - 1.0);
+}
+
 double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
   return haptrial::spectral_radius(tick_of(gains, loop, hand));
 }

@@ -10,7 +10,14 @@ struct HandleLoop {
   double rate{1000.0};       // of the loop, 1 / T > 0 [Hz]
   int velocity_window{8};    // readings in the slope that estimates velocity >= 2
   int force_delay{1};        // ticks from a command to the force >= 1
+  double quantum{0.0};       // resolution of the encoders >= 0 [m]
 };
+
+/// The velocity that the estimate shows of a handle that is still, by one step of the encoder in
+/// the middle of its window [m/s]:
+///
+///     dv = 1.5 q n / ((n^2 - 1) T)
+double velocity_of_a_step(const HandleLoop& loop) noexcept;
 
 /// A hand that adds to the handle, along one axis. The default: nobody holds it.
 struct HeldBy {

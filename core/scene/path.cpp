@@ -44,10 +44,12 @@ Eigen::Vector3d PathGuide::force(const Felt& felt, FieldState& state) noexcept {
   return controller_.force(target, felt.hand, felt.shares);
 }
 
-CurveHold::CurveHold(const CurveParameters& p, const Setting&)
+CurveHold::CurveHold(const CurveParameters& p, const Setting& setting)
     : curve_(std::make_unique<control::SampledCurve>(p.points)),
       constraint_(std::make_unique<control::CurveConstraint>(*curve_, p.gains)),
-      controller_(p.gains) {}
+      controller_(p.gains),
+      end_(p.gains),
+      period_(1.0 / setting.rate) {}
 
 void CurveHold::adopt(const CurveHold& before) noexcept {
   const control::CurvePlace& place = before.constraint_->place();
@@ -58,12 +60,15 @@ void CurveHold::adopt(const CurveHold& before) noexcept {
   } else {
     constraint_->start(place.position);
   }
+  end_.start();
 }
 
 Eigen::Vector3d CurveHold::force(const Felt& felt, FieldState& state) noexcept {
   const PointState target = constraint_->follow(felt.hand);
   state.depth = (target.position - felt.hand.position).norm();
-  return controller_.force(target, felt.hand, felt.shares);
+  const control::GainShares own{1.0, felt.shares.damping / felt.shares.stiffness};
+  return felt.shares.stiffness *
+         end_.bounded(controller_.force(target, felt.hand, own), felt.hand, period_);
 }
 
 }  // namespace haptrial::scene

@@ -7,6 +7,7 @@
 #include "core/control/curve_constraint.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field_state.h"
+#include "core/scene/found_end.h"
 #include "core/stimulus/spatial_trajectory.h"
 
 namespace haptrial::scene {
@@ -54,13 +55,17 @@ struct CurveParameters {
 };
 
 /// Holds the hand on a curve through `points` and leaves it free along it, at its own pace: a
-/// virtual fixture (core/control/curve_constraint.h). Passive. Source: Morris 2006, §6.2.
+/// virtual fixture (core/control/curve_constraint.h). Where the place on the curve jumps, inside of
+/// a corner, the force follows by degrees (FoundEnd). Passive. Source: Morris 2006, §6.2.
 class CurveHold {
  public:
   /// @throws std::invalid_argument naming the parameter that breaks its bound
   CurveHold(const CurveParameters& parameters, const Setting& setting);
 
-  void start(const PointState& hand) noexcept { constraint_->start(hand.position); }
+  void start(const PointState& hand) noexcept {
+    constraint_->start(hand.position);
+    end_.start();
+  }
   /// Goes on at the place of `before`, where the two curves are the same; else at the nearest one.
   void adopt(const CurveHold& before) noexcept;
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
@@ -70,6 +75,8 @@ class CurveHold {
   std::unique_ptr<const control::SampledCurve> curve_;
   std::unique_ptr<control::CurveConstraint> constraint_;
   control::PdController controller_;
+  FoundEnd end_;
+  double period_;
 };
 
 }  // namespace haptrial::scene

@@ -39,7 +39,10 @@ StiffnessBound RigidObjectParameters::bound() const {
 }
 
 RigidObject::RigidObject(const RigidObjectParameters& parameters, const Setting& setting)
-    : parameters_(parameters), period_(1.0 / setting.rate), limit_(setting.limit) {
+    : parameters_(parameters),
+      period_(1.0 / setting.rate),
+      limit_(setting.limit),
+      end_(parameters.gains) {
   require(std::isfinite(parameters.scale) && parameters.scale > 0.0,
           "RigidObject: scale must be finite and above 0");
   if (parameters.body) {
@@ -60,6 +63,7 @@ void RigidObject::begin_at(const Vector3d& p) noexcept {
 
 void RigidObject::start(const PointState& hand) noexcept {
   touch_ = {};
+  end_.start();
   proxy_ = hand.position;
   if (renderer_) {
     begin_at(hand.position);
@@ -69,6 +73,7 @@ void RigidObject::start(const PointState& hand) noexcept {
 /// The proxy goes on from where it was, if the body lets it.
 void RigidObject::adopt(const RigidObject& before) noexcept {
   touch_ = before.touch_;
+  end_.start();
   proxy_ = before.proxy_;
   if (renderer_) {
     begin_at(proxy_);
@@ -125,16 +130,28 @@ Vector3d RigidObject::force(const Felt& felt, FieldState& state) noexcept {
            parameters_.pose.position;
   state.proxy = proxy_;
   if (!(contact.depth > 0.0) || !contact.force.allFinite()) {
-    return Vector3d::Zero();
+    return follow(Vector3d::Zero(), felt, state);
   }
   state.contact = true;
   state.depth = parameters_.scale * contact.depth;
   state.sliding = contact.state == ContactState::kSlip;
   state.normal = parameters_.pose.orientation * contact.normal;
-  const Vector3d force = push(contact, felt, state);
+  const Vector3d force = follow(push(contact, felt, state), felt, state);
   touch_ = {state.normal, std::max(0.0, force.dot(state.normal)),
             -state.normal.dot(felt.hand.velocity)};
   return force;
+}
+
+/// Ridges and the moment at which friction gives way are steps that are meant.
+Vector3d RigidObject::follow(const Vector3d& force, const Felt& felt, FieldState& state) noexcept {
+  const bool gives_way = state.sliding && !slid_;
+  slid_ = state.sliding;
+  if (relief_.highest > 0.0 || gives_way) {
+    end_.start();
+  }
+  state.limited = state.limited || force.norm() > limit_;
+  const double share = felt.shares.stiffness;
+  return share * end_.bounded(control::saturate(force, limit_) / share, felt.hand, period_);
 }
 
 }  // namespace haptrial::scene

@@ -7,6 +7,7 @@
 #include "core/contact/renderer.h"
 #include "core/control/pd_controller.h"
 #include "core/scene/field_state.h"
+#include "core/scene/found_end.h"
 #include "core/scene/surface.h"
 
 namespace haptrial::scene {
@@ -41,7 +42,8 @@ struct RigidObjectParameters {
 ///
 ///     e = |pushed| + h(p) - H,   f = clip(k e - b g · v, 0, F) g + k dragged   if e > 0
 ///
-/// so that the highest ridges lie at the mesh and grooves below it. F as in surface.h. A hand that
+/// so that the highest ridges lie at the mesh and grooves below it. F as in surface.h. Where the
+/// proxy falls over an edge the force follows by degrees (FoundEnd). A hand that
 /// is inside a closed body when the field is switched on is felt as pushed out to the nearest
 /// place of its surface.
 class RigidObject {
@@ -61,6 +63,8 @@ class RigidObject {
   void begin_at(const Eigen::Vector3d& p) noexcept;
   Eigen::Vector3d push(const contact::Contact& contact, const Felt& felt,
                        FieldState& state) noexcept;
+  Eigen::Vector3d follow(const Eigen::Vector3d& force, const Felt& felt,
+                         FieldState& state) noexcept;
 
   RigidObjectParameters parameters_;
   std::unique_ptr<contact::Renderer> renderer_;
@@ -68,6 +72,8 @@ class RigidObject {
   double limit_;
   ReliefHere relief_;
   SurfaceTouch touch_;
+  FoundEnd end_;
+  bool slid_{false};                                // on the tick before
   Eigen::Vector3d proxy_{Eigen::Vector3d::Zero()};  // of the last tick, in W [m]
 };
 

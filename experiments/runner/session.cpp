@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/exception_words.h"
+#include "core/record/read/session_facts.h"
 #include "experiments/control/progress.h"
 #include "experiments/control/session_controller.h"
 #include "experiments/control/signals.h"
@@ -410,7 +411,8 @@ void Session::note_setting() {
     record_.event(protocols::kLanguageTextsEvent, d_.language_texts);
   }
   if (d_.display.mirrored) {
-    record_.event("mirrored", "x of W runs to the left: the participant is left-handed");
+    record_.event(record::kMirroredEvent,
+                  "x of W runs to the left: the participant is left-handed");
   }
 }
 

@@ -51,7 +51,9 @@ TrialPresenter::AttemptResult TrialPresenter::present_once(const PlannedTrial& t
   p_.pacing.pause_where_asked();
   const bool done = answer_stands(presented);
   const AfterAbort after = done ? AfterAbort::kAsAsked : p_.trials.after_abort();
-  const bool skipped = (requests.skip || after == AfterAbort::kSkip) && !done;
+  // One whose answer before is taken back follows from that answer, and is presented after it.
+  const bool skipped =
+      (requests.skip || after == AfterAbort::kSkip) && !done && !p_.last_answer.goes_back();
   const char* how = done ? "completed" : skipped ? "skipped" : "aborted";
   p_.record.mark_trial("trial_end", trial, attempt, how);
   p_.notices.say_trial(trial, how);

@@ -32,6 +32,7 @@ BoneDefinition definition_of(const record::SessionReader& reader) {
     Table root = recorded_definition(reader, 0);
     BoneDefinition d = read_bone_definition(root, reader.info().definition_name, nullptr);
     root.finish();
+    show_as_recorded(reader, d);
     return d;
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",

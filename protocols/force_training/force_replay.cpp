@@ -21,6 +21,7 @@ ForceDefinition definition_of(const record::SessionReader& reader, int trial) {
     Table root = recorded_definition(reader, trial);
     ForceDefinition d = read_force_definition(root, reader.info().definition_name, nullptr);
     root.finish();
+    show_as_recorded(reader, d);
     return d;
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",

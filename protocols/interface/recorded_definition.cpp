@@ -7,7 +7,9 @@
 
 #include "core/base/definition/translations.h"
 #include "core/record/read/definition_versions.h"
+#include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
+#include "protocols/definition/definition.h"
 #include "protocols/definition/languages.h"
 
 namespace haptrial::protocols {
@@ -58,6 +60,10 @@ Table recorded_definition(const record::SessionReader& reader, int trial) {
     root.translate(recorded_translations(language, std::move(texts), reader.path().string()));
   }
   return root;
+}
+
+void show_as_recorded(const record::SessionReader& reader, Definition& definition) {
+  definition.display.mirrored = record::is_mirrored(reader);
 }
 
 }  // namespace haptrial::protocols

@@ -5,6 +5,8 @@
 
 namespace haptrial::protocols {
 
+struct Definition;
+
 /// Kinds of the two events of a run in another language than the definition's: which one, and the
 /// whole file with its texts, which is empty if there is none.
 inline constexpr const char* kLanguageEvent = "language";
@@ -16,5 +18,8 @@ inline constexpr const char* kLanguageTextsEvent = "language_texts";
 /// the file does not hold: those of the session's first trial
 /// @throws InputError if it is no definition that this version knows
 Table recorded_definition(const record::SessionReader& reader, int trial);
+
+/// What a session says beside its definition of how it was seen: mirrored or not.
+void show_as_recorded(const record::SessionReader& reader, Definition& definition);
 
 }  // namespace haptrial::protocols

@@ -23,10 +23,12 @@ std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const Pl
     const record::PassRow& pass = recorded.passes[i];
     const bool taken_back = std::ranges::any_of(
         recorded.taken_back, [i](const auto& row) { return std::cmp_equal(row.pass, i); });
-    if (taken_back || !is_of(pass, trial) || (found && found->end != TrialEnd::kAborted)) {
+    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
+    const bool counts =
+        !found || found->end == TrialEnd::kAborted || (found->end == TrialEnd::kSkipped && done);
+    if (taken_back || !is_of(pass, trial) || !counts) {
       continue;
     }
-    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
     found = {trial, done ? TrialEnd::kCompleted : TrialEnd::kAborted, {}};
     for (const record::ResponseRow& response : recorded.responses) {
       const record::PassRow& of = recorded.passes[static_cast<std::size_t>(response.pass)];

@@ -96,6 +96,7 @@ class TrialReplay {
     try {
       Table root = recorded_definition(reader_, request_.trial);
       auto read = protocol_.read(root, reader_.info().definition_name, nullptr);
+      show_as_recorded(reader_, *read);
       return std::unique_ptr<StudiedDefinition>(dynamic_cast<StudiedDefinition*>(read.release()));
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: its definition is not one of this version of haptrial: {}",

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/geometry/mesh/triangle_distance.h"
 
@@ -81,6 +82,7 @@ BallTouch::BallTouch(SharedCompliance body, const TouchOptions& options)
 void BallTouch::start(const Vector3d& tool) noexcept {
   tick_ += 2;  // nothing was pressed on the tick before
   round_ += 2;
+  begins_ = true;
   release(tool);
 }
 
@@ -122,7 +124,7 @@ void BallTouch::release(const Vector3d& tool) noexcept {
   contact_.proxy = tool;
 }
 
-const contact::Contact& BallTouch::tick(const Vector3d& tool, double) noexcept {
+const contact::Contact& BallTouch::tick(const Vector3d& tool, double period) noexcept {
   ++tick_;
   crowded_ = false;
   if (!tool.allFinite()) {
@@ -130,18 +132,23 @@ const contact::Contact& BallTouch::tick(const Vector3d& tool, double) noexcept {
     force_count_ = 0;
     return contact_;
   }
+  const Vector3d before = contact_.force;
+  const double bent = options_.stiffness * (tool - tool_).norm();
   gather(tool, tool - normal_force_ / options_.stiffness);
   if (near_.empty() || !settle(tool)) {
     release(tool);
-    return contact_;
+  } else {
+    ++counts_.contact;
+    counts_.crowded += crowded_ ? 1 : 0;
+    rub(tool);
+    keep_forces();
+    note(tool);
+    limit();
+    tool_ = tool;
   }
-  ++counts_.contact;
-  counts_.crowded += crowded_ ? 1 : 0;
-  rub(tool);
-  keep_forces();
-  note(tool);
-  limit();
-  tool_ = tool;
+  if (!std::exchange(begins_, false)) {
+    bound_change(before, bent, kFastestAtRest * period, contact_);
+  }
   return contact_;
 }
 

@@ -26,12 +26,13 @@ using SharedCompliance = std::shared_ptr<const Compliance>;
 /// with the tool x, the ball's centre y, the compliance u(f) and n from the ball into the body. A
 /// centre that is inside of the body presses on the nearest point of all faces.
 /// Without friction the force is minus the gradient of the energy that tool and body share, which
-/// turns by k at most. Friction is one bristle for all places, whose force they share as their
-/// normal forces; its stiffness is the body's across the normal, and when it changes no energy is
-/// added. How friction presses on the normal gaps is left out (Goodman 1962).
-/// Into a continuum a point sinks without end (Boussinesq), into elements as their size allows: a
-/// point, and any ball below smallest_ball(), is felt as a ball of that radius.
-/// Source: Morris 2006, §7.4.2 (friction); docs/algorithms/deformable-touch.md.
+/// turns by k at most; where its places are found anew, elsewhere or not at all, the change comes
+/// by degrees (bound_change()). Friction is one bristle for all places, whose force they share as
+/// their normal forces; its stiffness is the body's across the normal, and when it changes no
+/// energy is added. How friction presses on the normal gaps is left out (Goodman 1962). Into a
+/// continuum a point sinks without end (Boussinesq), into elements as their size allows: a point,
+/// and any ball below smallest_ball(), is felt as a ball of that radius. Source: Morris 2006,
+/// §7.4.2 (friction); docs/algorithms/deformable-touch.md.
 class BallTouch final : public BodyTouch {
  public:
   /// @throws std::invalid_argument naming the option that breaks its bound.
@@ -120,6 +121,7 @@ class BallTouch final : public BodyTouch {
   double upright_{0.0};   // the force before a tetrahedron would be inside out [N]
   std::uint64_t tick_{1};
   bool crowded_{false};  // on this tick
+  bool begins_{true};    // no tick before is one of this contact
   contact::Contact contact_;
   TouchCounts counts_;
 };

@@ -17,11 +17,10 @@ void check(const TouchOptions& options) {
           "friction: static must be at least dynamic, and dynamic at least 0");
 }
 
-void bound_change(const Eigen::Vector3d& before, double bent, double period,
+void bound_change(const Eigen::Vector3d& before, double bent, double by_itself,
                   contact::Contact& contact) noexcept {
-  constexpr double kFastest = 500.0;  // [N/s]
   const Eigen::Vector3d change = contact.force - before;
-  const double most = bent + kFastest * period;
+  const double most = bent + by_itself;
   if (const double size = change.norm(); size > most) {
     contact.force = before + most / size * change;
     const bool lost = contact.state == contact::ContactState::kFree;

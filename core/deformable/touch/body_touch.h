@@ -19,12 +19,18 @@ struct TouchOptions {
 /// @throws std::invalid_argument naming the option that breaks its bound.
 void check(const TouchOptions& options);
 
+/// The fastest change of a force without the hand [N/s]: of a body that moves by itself, as a ball
+/// of the usual spring at 0.1 m/s, and of one at rest, whose contact is lost or found at another
+/// place.
+inline constexpr double kFastestOfMoving = 500.0;
+inline constexpr double kFastestAtRest = 100.0;
+
 /// Limits the change of a force in a tick to what the hand makes by bending the ball's spring, and
-/// to 500 N/s: a ball of the usual spring that moves by itself at 0.1 m/s. A change beyond that
-/// comes from steps that fail. A force that is lost goes by as much, as if the contact went on.
+/// what the body makes by itself. A change beyond that comes from steps that fail. A force that is
+/// lost goes by as much, as if the contact went on.
 /// @param before  a tick ago [N]  @param bent  by the hand since then >= 0 [N]
-/// @param period  > 0 [s]
-void bound_change(const Eigen::Vector3d& before, double bent, double period,
+/// @param by_itself  of the body since then >= 0 [N]
+void bound_change(const Eigen::Vector3d& before, double bent, double by_itself,
                   contact::Contact& contact) noexcept;
 
 /// A force on one vertex of a body.

@@ -90,7 +90,7 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
   }
   note(tool);
   if (!grasps()) {
-    bound_change(before, options_.stiffness * way.norm(), period_, contact_);
+    bound_change(before, options_.stiffness * way.norm(), kFastestOfMoving * period_, contact_);
   }
   if (contact_.state != ContactState::kFree) {
     ++counts_.contact;

@@ -90,7 +90,7 @@ const contact::Contact& TwoRateTouch::tick(const Vector3d& tool, double) noexcep
     note();
   }
   if (finite) {
-    bound_change(before, options_.stiffness * way, period_, contact_);
+    bound_change(before, options_.stiffness * way, kFastestOfMoving * period_, contact_);
   }
   if (contact_.state != ContactState::kFree) {
     limit();

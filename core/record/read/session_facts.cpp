@@ -8,6 +8,7 @@
 #include <iterator>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -57,23 +58,32 @@ TrialProgress trial_progress(const SessionReader& reader) {
       progress.ended_early = event.text;
     }
   }
-  std::set<int> begun, done;
-  for (const PassRow& pass : reader.passes()) {
+  std::set<int> begun, done, skipped;
+  const std::vector<TakenBackRow> taken_back = reader.rows<TakenBackRow>();
+  const std::vector<PassRow> passes = reader.passes();
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const PassRow& pass = passes[i];
     if (pass.practice || pass.trial < 1) {
       continue;
     }
     begun.insert(pass.trial);
+    const bool stands = std::ranges::none_of(
+        taken_back, [i](const TakenBackRow& row) { return std::cmp_equal(row.pass, i); });
     // A training pass is followed by the test pass of its trial.
-    if (pass.phase != Phase::kTraining && pass.status == PassStatus::kCompleted) {
+    if (stands && pass.phase != Phase::kTraining && pass.status == PassStatus::kCompleted) {
       done.insert(pass.trial);
     }
   }
-  const std::vector<SkippedRow> skipped = skipped_trials(reader);
+  for (const SkippedRow& row : skipped_trials(reader)) {
+    if (!row.practice && !done.contains(row.trial)) {
+      skipped.insert(row.trial);
+    }
+  }
   const auto is_done = [&](int trial) { return done.contains(trial); };
   const auto left = static_cast<int>(begun.size()) -
                     static_cast<int>(std::count_if(begun.begin(), begun.end(), is_done));
   progress.done = static_cast<int>(done.size());
-  progress.skipped = static_cast<int>(std::ranges::count(skipped, false, &SkippedRow::practice));
+  progress.skipped = static_cast<int>(skipped.size());
   progress.aborted = std::max(left - progress.skipped, 0);
   return progress;
 }
@@ -123,6 +133,11 @@ std::vector<DampingRow> damping_in(const std::vector<EventRow>& events) {
 }
 
 }  // namespace
+
+bool is_mirrored(const SessionReader& reader) {
+  return std::ranges::any_of(reader.events(),
+                             [](const EventRow& event) { return event.kind == kMirroredEvent; });
+}
 
 std::vector<SkippedRow> skipped_trials(const SessionReader& reader) {
   std::vector<SkippedRow> rows =

@@ -22,6 +22,14 @@ inline constexpr const char* kImportedEvent = "imported";
 /// An imported session has no samples, and the numbers of its ticks count trials.
 std::string imported_from(const SessionReader& reader);
 
+/// Kind of the event of a session whose device and view were mirrored for a left-handed
+/// participant, as design.mirror_left_handed says.
+inline constexpr const char* kMirroredEvent = "mirrored";
+
+/// Whether x of the session's tables runs to the participant's left, so that they can be compared
+/// with those of right hands.
+bool is_mirrored(const SessionReader& reader);
+
 /// "812 of 950 ticks (85.5 %) overran their period" where more than one tick in a hundred did. Each
 /// gives its force late; beyond that share the readings from which velocity is estimated are no
 /// longer even, and damping is not what the definition says.

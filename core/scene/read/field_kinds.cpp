@@ -58,9 +58,11 @@ const Schema<Field>& field_fade_schema() {
   static const auto schema =
       Schema<Field>()
           .number("fade_in", &Field::fade_in, kFadeBounds, "s",
-                  "Time over which the force grows after the field or object is switched on")
+                  "Time over which the force grows after the field or object is switched on; a shorter "
+                  "one than 0.01 s counts as 0, and the change fades over envelope.change_time")
           .number("fade_out", &Field::fade_out, kFadeBounds, "s",
-                  "Time over which the force goes after the field or object is switched off");
+                  "Time over which the force goes after the field or object is switched off; a shorter "
+                  "one than 0.01 s counts as 0, and the change fades over envelope.change_time");
   return schema;
 }
 

@@ -296,6 +296,18 @@ void HandleReport::note_taken(const Load& load) {
   }
 }
 
+/// A damper feels the steps of a coarse encoder. @returns the force of one [N]
+double HandleReport::knock_of(const Load& load) const {
+  return load.damping * control::velocity_of_a_step(loop_of(load));
+}
+
+void HandleReport::note_knocks(const Load& load) {
+  constexpr double kFelt = 0.5;  // [N]
+  if (knock_of(load) > kFelt) {
+    keep(load, &Load::damping, knocks_);
+  }
+}
+
 void HandleReport::note_stiffest(const Load& load) {
   const DeviceArm& arm = arms_[load.device];
   const bool turns = arm.part == device::Part::kRotation;
@@ -311,6 +323,7 @@ void HandleReport::add(Load load, const LoadOf& of_height) {
   note_driving(load);
   note_late(load);
   note_taken(load);
+  note_knocks(load);
   if (load.stiffness == 0.0 && load.damping == 0.0 && load.mass == 0.0) {
     return;
   }
@@ -382,6 +395,13 @@ void HandleReport::add_words_of_use(HandleText& words) const {
             "stage {}: ridges leave {} {:.3g} N of its limit of {:g} N, and a hand that presses "
             "harder falls through; a higher limit or lower ridges leave more",
             load.stage, load.surface, load.left, load.left + load.taken));
+  }
+  for (const Load& load : knocks_) {
+    words.warnings.push_back(fmt::format(
+        "{}: with device.position_quantum of {:g} m and device.velocity_window of {} ms each step "
+        "of the virtual device's encoder is a knock of {:.2g} N; a longer window, a finer quantum "
+        "or less damping avoids them",
+        sum_of(load), d_.device.position_quantum, d_.device.velocity_window, knock_of(load)));
   }
   for (const Load& load : late_) {
     const double rate = arms_[load.device].limits.max_force_rate;

@@ -71,6 +71,8 @@ class HandleReport {
   void note_driving(const Load& load);
   void note_late(const Load& load);
   void note_taken(const Load& load);
+  double knock_of(const Load& load) const;
+  void note_knocks(const Load& load);
   void note_stiffest(const Load& load);
   std::string amount_of(const Load& load) const;
   std::string left_on_bare_handle(const Load& load) const;
@@ -82,6 +84,7 @@ class HandleReport {
   std::vector<Load> worst_;    // (stages that some hand does not carry)
   std::vector<Load> taken_;    // (stages whose ridges take most of a surface's limit)
   std::vector<Load> late_;     // (stages whose force follows the hand too slowly)
+  std::vector<Load> knocks_;   // (stages whose damping feels steps of the encoder)
   std::vector<Load> driving_;  // (stages that push a hand along its way)
   BeginningReport beginnings_;
   FeltParts felt_;

@@ -42,6 +42,16 @@ void refuse_parts(Table& objects, const TrialsDefinition& d, const DeviceOf& dev
   }
 }
 
+/// A fade of a few ticks is a step, which none at all is not: the envelope lets the change fade then.
+void leave_out_short_fades(std::vector<scene::Field>& fields) {
+  constexpr double kShortest = 0.01;  // [s]
+  for (scene::Field& field : fields) {
+    for (double* fade : {&field.fade_in, &field.fade_out}) {
+      *fade = *fade < kShortest ? 0.0 : *fade;
+    }
+  }
+}
+
 /// Fields, and behind them the objects, which are felt as fields.
 void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presented) {
   DeviceOf devices;
@@ -59,6 +69,7 @@ void read_what_is_felt(Table& root, const TrialsDefinition& d, Presented& presen
         scene::read_fields(table, d.rate, objects, channel::names_of_values(d.channels));
   }
   presented.fields.insert(presented.fields.end(), objects.begin(), objects.end());
+  leave_out_short_fades(presented.fields);
   presented.felt = felt_by(presented.fields, devices, d.hands);
   presented.felt.resize(static_cast<std::size_t>(d.devices()), 0);
 }

@@ -48,8 +48,9 @@ class Axis {
   }
 
   Hand hand;
-  double push{0.0};   // by somebody [N]
-  double force{0.0};  // commanded [N]
+  double push{0.0};      // by somebody [N]
+  double quantum{1e-5};  // of the encoder [m]
+  double force{0.0};     // commanded [N]
   GainShares shares;
 
   void tick() {
@@ -62,7 +63,7 @@ class Axis {
     on_their_way_.push_back(force);
     move(on_their_way_.front());
     on_their_way_.erase(on_their_way_.begin());
-    readings_.insert(readings_.begin(), 1e-5 * std::round(1e5 * position_));
+    readings_.insert(readings_.begin(), quantum * std::round(position_ / quantum));
     readings_.pop_back();
   }
 
@@ -180,6 +181,25 @@ TEST(HandleGuardTest, NoHandOscillatesForLongerThanAFifthOfASecond) {
   }
 }
 
+/// The damper that calms must not be what oscillates.
+TEST(HandleGuardTest, StepsOfACoarseEncoderTakeNoWallAway) {
+  for (const double quantum : {1e-5, 3e-5, 1e-4, 3e-4}) {
+    for (const double mass : {0.15, 0.3, 0.8}) {
+      Axis axis({"a wall", {1000.0, 3.0}, 0.0, 8.0, true}, {0.22, 1000.0, 2, 1, quantum}, true);
+      axis.quantum = quantum;
+      axis.hand = like_the_shipped(mass);
+      axis.push = -4.0;
+      axis.forces(2.0);
+      const double pressed = 4.0 / (1000.0 + axis.hand.stiffness);  // [m]
+      const double step = (1000.0 + 3.0 * 1000.0) * quantum + 0.25;
+      for (const double force : axis.forces(1.0)) {
+        ASSERT_NEAR(force, 1000.0 * pressed, 3.0 * step) << quantum << " m, " << mass << " kg";
+      }
+      EXPECT_GT(axis.shares.stiffness, 0.95) << quantum << " m, " << mass << " kg";
+    }
+  }
+}
+
 TEST(HandleGuardTest, WithoutItLightHandsOscillate) {
   for (const std::size_t law : {0u, 1u, 4u, 9u}) {
     Axis axis(laws()[law], {}, false);
@@ -200,8 +220,8 @@ TEST(HandleGuardTest, AHandThatCarriesItHasAllTheGains) {
   }
 }
 
-/// A tremor of 0.5 N (root mean square) may be in resonance with a wall. Who leans on the wall would
-/// fall if it gave way. Hands that carry the wall.
+/// A tremor of 0.5 N (root mean square) may be in resonance with a wall. Who leans on the wall
+/// would fall if it gave way. Hands that carry the wall.
 TEST(HandleGuardTest, ATremblingHandKeepsAllThatItLeansOn) {
   for (const double stiffness : {500.0, 1000.0, 2000.0}) {
     for (const double mass : {0.3, 0.8, 2.0}) {
@@ -216,11 +236,11 @@ TEST(HandleGuardTest, ATremblingHandKeepsAllThatItLeansOn) {
           axis.push = -4.0 * std::min(1.0, 1e-3 * i) +
                       0.71 * std::sin(2.0 * std::numbers::pi * hertz * 1e-3 * i);
           axis.tick();
-          ASSERT_EQ(axis.shares.stiffness, 1.0) << stiffness << " N/m, " << mass << " kg, " << hertz
-                                                << " Hz, tick " << i;
+          ASSERT_EQ(axis.shares.stiffness, 1.0)
+              << stiffness << " N/m, " << mass << " kg, " << hertz << " Hz, tick " << i;
           if (i > 1000) {  // the first touch is a knock
-            ASSERT_EQ(axis.shares.damping, 1.0) << stiffness << " N/m, " << mass << " kg, " << hertz
-                                                << " Hz, tick " << i;
+            ASSERT_EQ(axis.shares.damping, 1.0)
+                << stiffness << " N/m, " << mass << " kg, " << hertz << " Hz, tick " << i;
           }
         }
       }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -59,6 +60,25 @@ TEST(HandleLoopTest, TheBareHandleCarriesItsShareOfDampingWithMargin) {
     }
   }
   EXPECT_EQ(damping_of_bare_handle(3.0, {}), 3.0) << "no more than is wanted";
+}
+
+TEST(HandleLoopTest, AStepOfTheEncoderLooksAsFastAsTheSlopeOfItsReadings) {
+  for (const int n : {2, 5, 8, 31}) {
+    const HandleLoop loop{.rate = 4000.0, .velocity_window = n, .quantum = 2e-5};
+    double fastest = 0.0;
+    for (int step = 1; step < n; ++step) {  // the readings from there on are one quantum higher
+      double upper = 0.0;
+      double lower = 0.0;
+      for (int i = 0; i < n; ++i) {
+        const double centred = i - 0.5 * (n - 1);
+        upper += centred * (i >= step ? loop.quantum : 0.0);
+        lower += centred * centred;
+      }
+      fastest = std::max(fastest, upper / lower * loop.rate);
+    }
+    EXPECT_NEAR(velocity_of_a_step(loop), fastest, n % 2 == 0 ? 1e-12 : 0.05 * fastest) << n;
+  }
+  EXPECT_EQ(velocity_of_a_step({}), 0.0);
 }
 
 TEST(HandleLoopTest, TheLightestHandIsOnTheEdge) {

@@ -624,6 +624,32 @@ TEST(CurveHoldTest, PullsAcrossTheCurveAndLeavesTheHandFreeAlongIt) {
 
 /// A curve that nearly closes: the hand goes round it, and what follows in another trial of the
 /// same curve goes on at its strand, though the other one is nearer.
+TEST(CurveHoldTest, InsideOfACornerTheForceTurnsByDegrees) {
+  const double slope = std::tan(std::numbers::pi / 6.0);  // 120 degrees at the origin
+  const std::vector<Vector3d> corner{{-0.05, 0.05 * slope, 0.0}, {}, {0.05, 0.05 * slope, 0.0}};
+  CurveHold hold({corner, {900.0, 10.0}}, kSetting);
+  const Vector3d from(-0.01, 0.0025, 0.0);
+  hold.start({from, Vector3d::Zero()});
+  constexpr double kSpeed = 0.05;  // [m/s]
+  Vector3d before = Vector3d::Zero();
+  double most = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    const PointState hand{from + Vector3d(kSpeed * i / kSetting.rate, 0.0, 0.0),
+                          {kSpeed, 0.0, 0.0}};
+    FieldState state;
+    Felt felt;
+    felt.hand = hand;
+    const Vector3d force = hold.force(felt, state);
+    if (i > 0) {
+      const double allowed = 900.0 * kSpeed / kSetting.rate + 20.0 * kSpeed + 0.2;
+      ASSERT_LE((force - before).norm(), allowed + 1e-9) << i;
+      most = std::max(most, std::abs(force.x() - before.x()));
+    }
+    before = force;
+  }
+  EXPECT_LT(before.x(), 0.0) << "it is drawn back to the other strand";
+}
+
 TEST(CurveHoldTest, KeepsItsStrandFromTrialToTrial) {
   const std::vector<Vector3d> hairpin{
       {0.0, 0.0, 0.0}, {0.05, 0.0, 0.0}, {0.05, 0.0, 0.01}, {0.0, 0.0, 0.01}};

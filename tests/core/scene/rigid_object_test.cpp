@@ -60,6 +60,33 @@ TEST(RigidObjectTest, AFaceOfABoxIsExact) {
   }
 }
 
+/// A hand that presses strokes over the edge of a box, which holds it no more from there on.
+TEST(RigidObjectTest, AnEdgeLetsGoByDegrees) {
+  for (const double radius : {0.0, 0.003}) {
+    RigidObjectParameters p;
+    p.body = shared(geometry::make_box({0.04, 0.04, 0.04}));
+    p.gains = {800.0, 2.0};
+    p.tool_radius = radius;
+    Scene scene({placed(p, 10.0)}, kRate);
+    scene.switch_to(Scene::kAll);
+    constexpr double kSpeed = 0.04;  // [m/s]
+    Vector3d before = Vector3d::Zero();
+    double largest = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+      const Vector3d at(0.01 + kSpeed * i / kRate, 0.02 + radius - 0.005 * std::min(1.0, i / 200.0),
+                        0.0);
+      const Vector3d force = scene.force({at, {kSpeed, i < 200 ? -0.025 : 0.0, 0.0}});
+      const double way = std::hypot(kSpeed, i <= 200 ? 0.025 : 0.0) / kRate;
+      const double allowed = 800.0 * way + 4.0 * 0.05 + 0.2;
+      ASSERT_LE((force - before).norm(), allowed) << radius << ' ' << i;
+      largest = std::max(largest, force.norm());
+      before = force;
+    }
+    EXPECT_GT(largest, 3.9);
+    EXPECT_EQ(before.norm(), 0.0);
+  }
+}
+
 TEST(RigidObjectTest, ASphereOfTrianglesFeelsLikeTheFieldOfASphere) {
   RigidObjectParameters p;
   p.body = shared(geometry::make_sphere(0.025, 40));

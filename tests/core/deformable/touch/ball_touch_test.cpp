@@ -296,6 +296,37 @@ TEST(BallTouchTest, AClosedPathGivesNoEnergy) {
   }
 }
 
+/// A ball deep in a block of few cells, whose places are found anew now and then.
+TEST(BallTouchTest, AStrokeMakesNoBlows) {
+  constexpr double kSpring = 540.0;
+  const auto body = std::make_shared<const Compliance>(soft_block(8), soft_tissue());
+  BallTouch touch(body, {0.0, kSpring, {}});
+  double largest = 0.0;
+  for (const double depth : {0.004, 0.006, 0.008}) {
+    Vector3d tool(0.0003, kTop + 0.008, 0.0);
+    touch.start(tool);
+    Vector3d before = Vector3d::Zero();
+    for (int i = 0; i < 4000; ++i) {
+      const double pressed = std::min(1.0, i / 1000.0);
+      const Vector3d next(0.0003, kTop + 0.008 - (0.008 + depth) * pressed,
+                          0.014 * std::sin(2.0 * std::numbers::pi * 1e-3 * i) * pressed);
+      const Vector3d force = touch.tick(next, kTick).force;
+      const double allowed = kSpring * (next - tool).norm() + kFastestAtRest * kTick;
+      ASSERT_LE((force - before).norm(), allowed + 1e-9) << i;
+      largest = std::max(largest, force.norm());
+      before = force;
+      tool = next;
+    }
+    const Vector3d away = tool + Vector3d(0.0, 0.05, 0.0);
+    touch.tick(away, kTick);
+    for (int i = 0; i < 200; ++i) {
+      before = touch.tick(away, kTick).force;
+    }
+    EXPECT_EQ(before.norm(), 0.0) << "the rest of a lost contact goes";
+  }
+  EXPECT_GT(largest, 1.0);
+}
+
 TEST(BallTouchTest, FrictionHoldsUpToItsBoundAndThenSlips) {
   const double mu = 0.4;
   BallTouch touch(soft_body(), ball(0.007, 3000.0, {mu, 0.3}));
