@@ -410,6 +410,9 @@ void Session::note_setting() {
     record_.event(protocols::kLanguageEvent, d_.language);
     record_.event(protocols::kLanguageTextsEvent, d_.language_texts);
   }
+  if (const std::string name = d_.case_of_session(); !name.empty()) {
+    record_.event(record::kCaseEvent, name);
+  }
   if (d_.display.mirrored) {
     record_.event(record::kMirroredEvent,
                   "x of W runs to the left: the participant is left-handed");

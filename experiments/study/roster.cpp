@@ -218,8 +218,15 @@ class RosterMaker {
     }
   }
 
-  /// The case of a person's next session, by the sessions before it that came to their end.
+  /// The case of a person's next session: its own if it is to be resumed, else by the sessions
+  /// before it that came to their end.
   NextCase case_of(const RosterPerson& person) const {
+    if (const RosterSession* begun = person.session(person.next)) {
+      const record::SessionReader reader(request_.folder / begun->file);
+      if (std::string name = record::case_in(reader); !name.empty()) {
+        return {std::move(name), "begun"};
+      }
+    }
     std::vector<fs::path> files;
     for (const RosterSession& each : person.sessions) {
       if (each.state == SessionState::kDone && each.session < person.next) {

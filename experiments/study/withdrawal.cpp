@@ -41,6 +41,14 @@ bool is_plan(const fs::path& file) {
   return file.filename().string().find(".plan.") != std::string::npos;
 }
 
+/// Tables beside sessions with a row for each of them that people filled in: what they said of
+/// others stays.
+bool is_filled_in(const fs::path& file) {
+  static const std::set<std::string> kTables{"ratings.csv", "checklist.csv"};
+  return kTables.contains(file.filename().string()) ||
+         (file.filename() == "reasons.csv" && file.parent_path().filename() == "excluded");
+}
+
 /// Kinds of files that commands make from sessions.
 bool is_made(const fs::path& file) {
   static const std::set<std::string> kKinds{".html", ".csv", ".tsv",  ".json", ".svg", ".pdf",
@@ -311,8 +319,7 @@ void sort_others(const std::vector<fs::path>& files, const std::vector<fs::path>
   const auto is_younger = [&](const fs::path& file) { return fs::last_write_time(file) >= first; };
   std::vector<fs::path> unnamed;
   for (const fs::path& file : files) {
-    if (is_session_file(file) || file.filename() == "reasons.csv" || file.filename() == kList ||
-        is_plan(file)) {
+    if (is_session_file(file) || is_filled_in(file) || file.filename() == kList || is_plan(file)) {
       continue;
     }
     const bool by_path = path_names(file, folders, subject);
@@ -332,25 +339,40 @@ void sort_others(const std::vector<fs::path>& files, const std::vector<fs::path>
   std::ranges::sort(found.made);
 }
 
-/// Finds the reasons of exclusions in the study's folder, and beside sessions that are withdrawn.
-void find_reasons(const std::vector<fs::path>& files, const fs::path& study, Withdrawal& found) {
-  std::ranges::copy_if(files, std::back_inserter(found.reasons), [&](const fs::path& file) {
-    const fs::path folder = file.parent_path().parent_path();
-    return file.filename() == "reasons.csv" && file.parent_path().filename() == "excluded" &&
+/// Finds these tables in the study's folder, and beside sessions that are withdrawn.
+void find_tables(const std::vector<fs::path>& files, const fs::path& study, Withdrawal& found) {
+  std::ranges::copy_if(files, std::back_inserter(found.tables), [&](const fs::path& file) {
+    const fs::path parent = file.parent_path();
+    const fs::path folder = parent.filename() == "excluded" ? parent.parent_path() : parent;
+    return is_filled_in(file) &&
            (is_below(file, study) || std::ranges::any_of(found.sessions, [&](const auto& session) {
               return is_below(session, folder);
             }));
   });
 }
 
-void remove_reason(const fs::path& file, const std::string& subject) {
+/// A row goes on over the ends of lines that stand in quotes.
+std::string next_row(std::istringstream& lines) {
+  std::string row;
+  std::string line;
+  do {
+    if (!std::getline(lines, line)) {
+      break;
+    }
+    row += line + "\n";
+  } while (std::ranges::count(row, '"') % 2 != 0);
+  return row;
+}
+
+/// Removes the rows whose first column names the participant; a table without any other goes.
+void remove_rows(const fs::path& file, const std::string& subject) {
   std::istringstream lines(file_text(file));
   std::string kept;
   bool rows = false;
-  for (std::string line; std::getline(lines, line);) {
-    if (!has_word(line.substr(0, line.find(',')), subject)) {
+  for (std::string row = next_row(lines); !row.empty(); row = next_row(lines)) {
+    if (!has_word(row.substr(0, row.find(',')), subject)) {
       rows = rows || !kept.empty();
-      kept += line + "\n";
+      kept += row;
     }
   }
   rows ? write_whole(file, kept) : static_cast<void>(fs::remove(file));
@@ -404,7 +426,7 @@ Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::stri
   }
   sort_others(files, folders, subject,
               foreign_exports(files, folders.front(), subject, found.sessions), found);
-  find_reasons(files, folders.front(), found);
+  find_tables(files, folders.front(), found);
   return found;
 }
 
@@ -422,8 +444,8 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
       }
     }
   }
-  for (const fs::path& file : found.reasons) {
-    remove_reason(file, subject);
+  for (const fs::path& file : found.tables) {
+    remove_rows(file, subject);
   }
   for (std::size_t i = 0; i < folders.size(); ++i) {
     note_files(folders[i], kWithdrawn, digests[i]);

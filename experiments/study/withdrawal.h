@@ -14,7 +14,7 @@ struct Withdrawal {
   std::vector<std::filesystem::path> sessions;  // session files, partial ones and copies, sorted
   std::vector<std::filesystem::path> made;      // tables, reports, pictures made from sessions
   std::vector<std::filesystem::path> others;    // other files that name the participant
-  std::vector<std::filesystem::path> reasons;   // tables of exclusions that may have a row of it
+  std::vector<std::filesystem::path> tables;    // that people filled in and may have a row of it
 };
 
 /// Looks through folders with all that is below them, of which the first is the study's own. A
@@ -30,10 +30,10 @@ struct Withdrawal {
 Withdrawal find_withdrawal(const std::vector<std::filesystem::path>& folders,
                            const std::string& subject, const ProtocolOf& protocol_of);
 
-/// Deletes sessions and what was made from sessions, the participant's rows of
-/// excluded/reasons.csv, and folders that become empty by that; adds a row to withdrawals.csv in
-/// the first folder, with the time, the user's login and how much was deleted, without the
-/// identifier.
+/// Deletes sessions and what was made from sessions, the participant's rows of excluded/reasons.csv
+/// and of what raters said (ratings.csv, checklist.csv), and folders
+/// that become empty by that; adds a row to withdrawals.csv in the first folder, with the time, the
+/// user's login and how much was deleted, without the identifier.
 /// @param folders  as they were looked through
 /// @throws RunError for a file that cannot be deleted; those before it are gone then
 void withdraw(const Withdrawal& found, const std::vector<std::filesystem::path>& folders,

@@ -159,6 +159,9 @@ struct Definition {
   /// Streams of a session beside its samples, from tables of the protocol's own.
   virtual std::vector<stream::SideStream> side_streams() const { return {}; }
 
+  /// The case of a curriculum that the session is of; empty: there is none.
+  virtual std::string case_of_session() const { return {}; }
+
   /// Whether there is a force that the participant is to follow or to recall.
   virtual bool has_target() const { return true; }
   /// Whether the pointer of the participant's window answers something.

@@ -1,5 +1,8 @@
 #include "analysis/bone_drilling/report/validity_study.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -128,6 +131,29 @@ std::string structure_of(const ValidityStudy& study,
   return most;
 }
 
+/// Leaves out what raters said of procedures that are not analysed, such as those of a participant
+/// who was excluded or has withdrawn, and says so.
+template <class Row>
+void leave_out_others(std::vector<Row>& rows, std::span<const ProcedureSummary> procedures,
+                      const char* what, std::vector<std::string>& remarks) {
+  std::set<std::string> sessions;
+  const auto is_left_out = [&](const Row& row) {
+    const bool analysed = std::ranges::any_of(procedures, [&](const ProcedureSummary& p) {
+      return p.session == row.session && p.number == row.procedure;
+    });
+    if (!analysed) {
+      sessions.insert(row.session);
+    }
+    return !analysed;
+  };
+  const std::size_t before = rows.size();
+  std::erase_if(rows, is_left_out);
+  if (rows.size() < before) {
+    remarks.push_back(fmt::format("{} of procedures that are not analysed, in {}, left out",
+                                  counted(before - rows.size(), what), fmt::join(sessions, ", ")));
+  }
+}
+
 }  // namespace
 
 ValidityResult analyze(const ValidityStudy& study) {
@@ -150,10 +176,12 @@ ValidityResult analyze(const ValidityStudy& study) {
   std::vector<Rating> ratings;
   if (!study.ratings.empty() && fs::exists(study.ratings)) {
     ratings = load_ratings(study.ratings);
+    leave_out_others(ratings, result.procedures, "rating", result.remarks);
   }
   if (!study.checklist.empty()) {
     result.checked.checklist = load_checklist(study.checklist);
     result.checked.rows = load_checked(study.checked, result.checked.checklist);
+    leave_out_others(result.checked.rows, result.procedures, "checklist", result.remarks);
   }
   const auto region_test = region_label_test(result.procedures, study.plan.expert_groups);
   result.validity = validity(result.procedures, regions, ratings, study.plan, region_test);

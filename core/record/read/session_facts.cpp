@@ -139,6 +139,15 @@ bool is_mirrored(const SessionReader& reader) {
                              [](const EventRow& event) { return event.kind == kMirroredEvent; });
 }
 
+std::string case_in(const SessionReader& reader) {
+  for (EventRow& event : reader.events()) {
+    if (event.kind == kCaseEvent) {
+      return std::move(event.text);
+    }
+  }
+  return "";
+}
+
 std::vector<SkippedRow> skipped_trials(const SessionReader& reader) {
   std::vector<SkippedRow> rows =
       reader.has(table_of<SkippedRow>()) ? reader.rows<SkippedRow>() : skipped_in(reader.events());

@@ -30,6 +30,12 @@ inline constexpr const char* kMirroredEvent = "mirrored";
 /// with those of right hands.
 bool is_mirrored(const SessionReader& reader);
 
+/// Kind of the event of a run of a curriculum's session: its case.
+inline constexpr const char* kCaseEvent = "case";
+
+/// The case that a session is of; empty: it has none, or a version before 0.3 recorded it.
+std::string case_in(const SessionReader& reader);
+
 /// "812 of 950 ticks (85.5 %) overran their period" where more than one tick in a hundred did. Each
 /// gives its force late; beyond that share the readings from which velocity is estimated are no
 /// longer even, and damping is not what the definition says.

@@ -28,6 +28,7 @@
 #include "experiments/studies/drilling/drilling_study.h"
 #include "experiments/studies/drilling/expert_sessions.h"
 #include "experiments/studies/drilling/rating_pictures.h"
+#include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"
 #include "protocols/bone_drilling/bone_replay.h"
 
@@ -291,6 +292,23 @@ void import_checklists(const std::vector<std::string>& sheets, const fs::path& s
              counted(raters.size(), "rater", "raters"), (study / kCheckedFile).string());
 }
 
+/// A sheet goes on naming who has withdrawn by a code; nothing of them comes back into the study.
+void leave_out_gone(std::vector<drilling::Rating>& ratings, const fs::path& study) {
+  std::set<std::string> gone;
+  std::erase_if(ratings, [&](const drilling::Rating& rating) {
+    const bool there =
+        fs::exists(study / rating.session) || fs::exists(study / kExcludedFolder / rating.session);
+    if (!there) {
+      gone.insert(rating.session);
+    }
+    return !there;
+  });
+  if (!gone.empty()) {
+    fmt::print("{} that {} no longer in the study: ratings left out\n",
+               counted(gone.size(), "session", "sessions"), gone.size() == 1 ? "is" : "are");
+  }
+}
+
 int rate_import(const RateImportOptions& options) {
   const fs::path study(options.folder);
   const fs::path key_file = study / kKeyFile;
@@ -326,6 +344,7 @@ int rate_import(const RateImportOptions& options) {
     }
     ratings.insert(ratings.end(), own.begin(), own.end());
   }
+  leave_out_gone(ratings, study);
   const analysis::Staging staging(study);
   staging.write(kRatingsFile, drilling::ratings_csv(ratings));
   staging.publish();

@@ -10,6 +10,10 @@
 #include "core/base/counted.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
+#include "core/record/hdf5/session_target.h"
+#include "core/record/hdf5/session_writer.h"
+#include "core/record/read/session_facts.h"
+#include "core/record/read/session_reader.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/run_checks.h"
@@ -218,8 +222,27 @@ void check_place(const RunOptions& options, const protocols::Definition& d, bool
 
 }  // namespace
 
+/// A session goes on with its own case, whatever would come next by now.
+void keep_case(RunOptions& options, const protocols::Definition& d, const std::string& asked) {
+  const std::filesystem::path file = session_file(options, d);
+  const std::string own = record::SessionWriter::can_resume(file)
+                              ? record::case_in(record::SessionReader(record::partial_path(file)))
+                              : "";
+  if (own.empty()) {
+    return;
+  }
+  if (!asked.empty() && asked != own) {
+    throw InputError(
+        fmt::format("--case is '{}', but the session that is to be resumed is of the "
+                    "case '{}'; leave out --case",
+                    asked, own));
+  }
+  options.case_name = own;
+}
+
 std::string choose_session(RunOptions& options, const Experiment& experiment) {
   const protocols::Definition& d = *experiment.definition;
+  const std::string asked = options.case_name;
   if (options.session) {
     checked_session(*options.session, d);
   }
@@ -229,6 +252,9 @@ std::string choose_session(RunOptions& options, const Experiment& experiment) {
     options.participant = recorded_number(options, session_file(options, d));
   }
   check_place(options, d, recorded);
+  if (options.resume) {
+    keep_case(options, d, asked);
+  }
   if (options.case_name.empty() && has_cases(experiment)) {
     choose_case(options, experiment);
   }
