@@ -10,6 +10,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/common_tables.h"
 #include "core/record/rows/session_tables.h"
+#include "core/record/rows/trial_facts.h"
 
 namespace haptrial::python {
 namespace {
@@ -194,6 +195,21 @@ class TableRead {
       target.values += piece.to * table_->fields()[target.field].column.bytes;
     }
     readers_[piece.file].columns(*table_, piece.first, piece.count, targets);
+    for (const record::ColumnTarget& target : targets) {
+      if (table_->name() == "trials" && table_->fields()[target.field].column.name == "status") {
+        take_back(piece, target.values);
+      }
+    }
+  }
+
+  /// A pass whose answer the experimenter took back counts as aborted, as SessionReader has it.
+  void take_back(const Piece& piece, std::uint8_t* status) const {
+    for (const record::TakenBackRow& row : readers_[piece.file].rows<record::TakenBackRow>()) {
+      const auto pass = static_cast<std::uint64_t>(row.pass);
+      if (pass >= piece.first && pass < piece.first + piece.count) {
+        status[pass - piece.first] = static_cast<std::uint8_t>(record::PassStatus::kAborted);
+      }
+    }
   }
 
   py::dict described(const record::Field& field, py::array values) const {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "core/base/require.h"
@@ -93,6 +94,41 @@ struct Scene::Part {
   ReliefHere relief{};     // of a surface
   PassingWatch passing{};  // of a relief
   FieldState state{};
+  Part* before{nullptr};  // of the scene before, until it is known what acts in this one
+  Part* lender{nullptr};  // of a scene before, whose law fades out here; has this part's own
+
+  /// Fades out as it was felt: with the law of the scene before, not with the numbers to come.
+  void keep_law() noexcept {
+    Part* from = std::exchange(before, nullptr);
+    if (from != nullptr && acts()) {
+      swap_law(*from);
+      lender = from;
+    }
+  }
+  /// Acts anew, and so with its own numbers.
+  void take_own_law() noexcept {
+    before = nullptr;
+    if (Part* has_own = std::exchange(lender, nullptr)) {
+      swap_law(*has_own);
+      adopt_law(*has_own);
+    }
+  }
+  void swap_law(Part& other) noexcept {
+    law.swap(other.law);
+    std::swap(limit, other.limit);
+    std::swap(fade_in, other.fade_in);
+    std::swap(fade_out, other.fade_out);
+  }
+  void adopt_law(const Part& other) noexcept {
+    std::visit(
+        [&](auto& own) {
+          using Same = std::decay_t<decltype(own)>;
+          if constexpr (requires(const Same& same) { own.adopt(same); }) {
+            own.adopt(*std::get_if<Same>(&other.law));
+          }
+        },
+        law);
+  }
 
   bool acts() const noexcept { return fade.on() || !fade.over(); }
 
@@ -144,6 +180,7 @@ void Scene::switch_to(std::uint64_t mask) noexcept {
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Part& part = parts_[i];
     const bool on = (mask >> i & 1u) != 0;
+    on ? part.take_own_law() : part.keep_law();
     if (on == part.fade.on()) {
       continue;
     }
@@ -174,30 +211,24 @@ void Scene::restart_with(std::uint64_t mask) noexcept {
   switch_to(mask);
 }
 
-void Scene::start_from(const Scene& before) noexcept {
+void Scene::start_from(Scene& before) noexcept {
   before_ = before.before_;
   share_ = before.share_;
   way_.adopt(before.way_);
   const std::size_t shared = std::min(parts_.size(), before.parts_.size());
   for (std::size_t i = 0; i < shared; ++i) {
     Part& part = parts_[i];
-    const Part& old = before.parts_[i];
+    Part& old = before.parts_[i];
     if (part.kind != old.kind) {
       continue;
     }
+    part.before = &old;
     part.fade = old.fade;
     part.begins = old.begins;
     part.time = old.time;
     part.state = old.state;
     part.passing = old.passing;
-    std::visit(
-        [&](auto& law) {
-          using Same = std::decay_t<decltype(law)>;
-          if constexpr (requires(const Same& same) { law.adopt(same); }) {
-            law.adopt(*std::get_if<Same>(&old.law));
-          }
-        },
-        part.law);
+    part.adopt_law(old);
   }
 }
 

@@ -51,8 +51,9 @@ class Scene {
   /// interval begins, or is repeated.
   void restart_with(std::uint64_t mask) noexcept;
   /// Takes over weights, times, filters and bristles of fields that are of the same kind at the
-  /// same index in `before`.
-  void start_from(const Scene& before) noexcept;
+  /// same index in `before`. What the next mask does not have fades out with the numbers of
+  /// `before`, from which its law is borrowed. @param before  outlives the scene's use
+  void start_from(Scene& before) noexcept;
   /// One tick later. @param hand  position [m] and velocity [m/s] in W
   /// @param shares  of the fields' gains that the handle carries now
   /// @param channels  values that laws may follow (DeviceReading::channels)

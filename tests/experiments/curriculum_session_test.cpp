@@ -124,6 +124,19 @@ TEST_F(CurriculumSessionTest, ASessionHoldsTheBoneOfItsCaseAndReplays) {
   EXPECT_THAT(good("replay '" + third.string() + "'"), HasSubstr("the same bone"));
 }
 
+/// The roster would propose "plain" to a trainee who has finished nothing.
+TEST_F(CurriculumSessionTest, AResumedSessionKeepsItsCase) {
+  fs::create_directory(*folder_ / "cut");
+  fs::copy_file(fs::path(*folder_ / "out") / "S01-session-3.h5",
+                fs::path(*folder_ / "cut") / "S01-session-3.h5.partial");
+  const std::string resume =
+      "run study.toml --subject S01 --session 3 --resume --device virtual --out cut";
+  EXPECT_THAT(refused(resume + " --case plain"),
+              HasSubstr("--case is 'plain', but the session that is to be resumed is of the case "
+                        "'other'; leave out --case"));
+  EXPECT_THAT(run(resume).output, HasSubstr("case other"));
+}
+
 TEST_F(CurriculumSessionTest, PagesSayHowEverybodyStands) {
   const std::string page = test::read_text(*folder_ / "out/S01-session-3.html");
   EXPECT_THAT(page, AllOf(HasSubstr("<h2>Curriculum</h2>"), HasSubstr("2 procedures, 2 passed"),

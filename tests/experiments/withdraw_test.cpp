@@ -107,6 +107,17 @@ TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
             "participant,reason\nS020,slept\n");
 }
 
+TEST_F(WithdrawTest, WhatRatersSaidOfOthersStays) {
+  const std::string head = "session,procedure,rater,score,simulated,comment\n";
+  write_text(folder_ / "out/mine/ratings.csv",
+             head + "S01.h5,1,li,3,0,\nS02.h5,1,li,4,0,\"over\ntwo lines\"\nS03.h5,1,li,5,0,\n");
+  write_text(folder_ / "out/mine/checklist.csv", head + "S02.h5,1,li,4,0,\n");
+  EXPECT_EQ(run("withdraw out/mine S02 --yes").status, 0);
+  EXPECT_EQ(file_text(folder_ / "out/mine/ratings.csv"),
+            head + "S01.h5,1,li,3,0,\nS03.h5,1,li,5,0,\n");
+  EXPECT_FALSE(fs::exists(folder_ / "out/mine/checklist.csv")) << "nothing else is in it";
+}
+
 TEST_F(WithdrawTest, StimuliDefinitionsAndOtherStudiesStay) {
   const auto old = fs::last_write_time(folder_ / "out/mine/S01.h5") - std::chrono::hours(1);
   fs::create_directories(folder_ / "stimuli/empty");

@@ -86,7 +86,7 @@ class Session:
     @cached_property
     def trials(self) -> pd.DataFrame:
         """One row a pass: trial, condition, phase, block, repetition, first_sample, last_sample,
-        status, practice, attempt."""
+        status, practice, attempt. A pass whose answer was taken back is an aborted one."""
         return self.table("trials")
 
     @cached_property

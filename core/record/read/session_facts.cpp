@@ -59,18 +59,13 @@ TrialProgress trial_progress(const SessionReader& reader) {
     }
   }
   std::set<int> begun, done, skipped;
-  const std::vector<TakenBackRow> taken_back = reader.rows<TakenBackRow>();
-  const std::vector<PassRow> passes = reader.passes();
-  for (std::size_t i = 0; i < passes.size(); ++i) {
-    const PassRow& pass = passes[i];
+  for (const PassRow& pass : reader.passes()) {
     if (pass.practice || pass.trial < 1) {
       continue;
     }
     begun.insert(pass.trial);
-    const bool stands = std::ranges::none_of(
-        taken_back, [i](const TakenBackRow& row) { return std::cmp_equal(row.pass, i); });
     // A training pass is followed by the test pass of its trial.
-    if (stands && pass.phase != Phase::kTraining && pass.status == PassStatus::kCompleted) {
+    if (pass.phase != Phase::kTraining && pass.status == PassStatus::kCompleted) {
       done.insert(pass.trial);
     }
   }

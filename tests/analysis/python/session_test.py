@@ -1,6 +1,7 @@
 """Session files as frames, held against h5py, which shares no code with haptrial."""
 import os
 import pathlib
+import shutil
 import unittest
 
 import h5py
@@ -19,6 +20,24 @@ def plain(name, column):
     if isinstance(column.dtype, pd.CategoricalDtype):
         return column.cat.codes.to_numpy()
     return column.to_numpy()
+
+
+class TakenBack(unittest.TestCase):
+    def test_an_answer_that_was_taken_back_is_of_an_aborted_pass(self):
+        path = support.FOLDER / "taken-back.h5"
+        shutil.copy(support.stiffness_study() / "S01.h5", path)
+        with h5py.File(path, "a") as file:
+            table = file["taken_back"]
+            table.resize((1,))
+            row = table[:]
+            row["pass"] = 3
+            table[:] = row
+        before = haptrial.open(support.stiffness_study() / "S01.h5").trials["status"].astype(str)
+        for after in (haptrial.open(path).trials, haptrial.study(path)):
+            after = after["status"].astype(str)
+            self.assertEqual(before[3], "completed")
+            self.assertEqual(after[3], "aborted")
+            self.assertEqual((before == "aborted").sum() + 1, (after == "aborted").sum())
 
 
 class EveryTable(unittest.TestCase):

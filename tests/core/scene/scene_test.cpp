@@ -285,6 +285,46 @@ TEST(SceneTest, ACourseInTimeIsTheSameInEveryInterval) {
   EXPECT_GT((second.force(held) - forces[0]).norm(), 1.0) << "the next stage goes on";
 }
 
+/// The stages of an interval that begin without a field must not tell what it will be like.
+TEST(SceneTest, WhatFadesOutHasTheNumbersOfItsOwnInterval) {
+  const auto pushing = [](double force) {
+    Field wave = field("wave", SineVibrationParameters{{force, 0.0, 0.0}, force, 50.0});
+    std::vector<Field> fields{field("push", ConstantParameters{{0.0, force, 0.0}}), wave,
+                              field("spring", SpringParameters{{0.0, 0.0, 0.01}, {100.0 * force}})};
+    for (Field& each : fields) {
+      each.fade_in = 0.02;
+      each.fade_out = 0.2;
+    }
+    return fields;
+  };
+  Scene alone(pushing(0.5), kRate);  // goes on by itself
+  Scene first(pushing(0.5), kRate);
+  for (Scene* scene : {&alone, &first}) {
+    scene->restart_with(Scene::kAll);
+    for (int i = 0; i < 100; ++i) {
+      scene->force({});
+    }
+  }
+  Scene second(pushing(5.0), kRate);
+  Scene fresh(pushing(5.0), kRate);
+  {
+    const haptrial::test::AllocationGuard guard;
+    second.start_from(first);
+    second.restart_with(0);
+    EXPECT_EQ(guard.count(), 0u);
+  }
+  alone.restart_with(0);
+  for (int i = 0; i < 300; ++i) {
+    ASSERT_LT((second.force({}) - alone.force({})).norm(), 1e-12) << i;
+  }
+  for (Scene* scene : {&second, &fresh}) {
+    scene->switch_to(Scene::kAll);
+  }
+  for (int i = 0; i < 100; ++i) {
+    ASSERT_LT((second.force({}) - fresh.force({})).norm(), 1e-12) << i << ", its own numbers";
+  }
+}
+
 /// The spring's end is on the polynomial of Flash and Hogan, from the hand to the new place.
 TEST(SceneTest, TheNextIntervalLeadsTheHandFromWhereItIs) {
   const auto mover_to = [](double x) {
