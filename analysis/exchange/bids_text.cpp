@@ -142,7 +142,7 @@ std::vector<ColumnDoc> event_docs(const Levels& phases, const std::vector<Column
       {"event", "", "what happened, in one word; n/a for a pass"},
       {"text", "", "details of the event"}};
   docs[10].levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};
-  docs[11].levels = {{"completed", "came to its end"}, {"aborted", "was broken off"}};
+  docs[11].levels = status_levels();
   merge_columns(facts, docs);
   return docs;
 }
@@ -153,7 +153,7 @@ struct EventLine {
 };
 
 EventLine line_of(const Session& session, const record::PassRow& pass, std::size_t index,
-                  const RunSpan& run, bool stimulus) {
+                  const char* status, const RunSpan& run, bool stimulus) {
   const double rate = session.source.info.rate;
   const auto seconds = [&](std::uint64_t ticks) { return static_cast<double>(ticks) / rate; };
   EventLine line;
@@ -166,7 +166,7 @@ EventLine line_of(const Session& session, const record::PassRow& pass, std::size
   row.add(record::name_of(pass.phase));
   row.add(pass.trial).add(pass.block).add(pass.repetition).add(pass.attempt);
   row.add(pass.practice ? 1 : 0);
-  row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  row.add(status);
   row.add(pass.stimulus_seed);
   if (run.ticks > 0) {
     row.add(seconds(run.first)).add(seconds(run.ticks));
@@ -342,10 +342,11 @@ std::string events_table(const Session& session, const record::SessionReader& re
   }
   std::vector<EventLine> lines;
   const auto passes = reader.passes();
+  const std::vector<const char*> statuses = pass_statuses(reader);
   const PassFacts facts = pass_facts(reader);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    lines.push_back(
-        line_of(session, passes[i], i, samples.runs.at(i), blocks.contains(passes[i].block)));
+    lines.push_back(line_of(session, passes[i], i, statuses[i], samples.runs.at(i),
+                            blocks.contains(passes[i].block)));
     add_facts(facts.cells[i], columns, lines.back());
   }
   std::vector<record::EventRow> events = reader.events();

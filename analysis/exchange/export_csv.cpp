@@ -123,11 +123,11 @@ void add_session(RowText& row, const ExportSession& s) {
 }
 
 void add_pass(RowText& row, const ExportSession& s, std::size_t index, const record::PassRow& pass,
-              const PassSpan& span) {
+              const char* status, const PassSpan& span) {
   row.add(s.info.subject).add(s.number).add(static_cast<std::uint64_t>(index)).add(pass.trial);
   row.add(pass.condition).add(record::name_of(pass.phase));
   row.add(pass.block).add(pass.repetition).add(pass.attempt).add(pass.practice ? 1 : 0);
-  row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  row.add(status);
   row.add(pass.stimulus_seed).add(pass.first_sample).add(pass.last_sample);
   row.add(span.onset).add(span.duration);
   row.add(truth(s.info.simulated)).add(truth(s.info.pilot)).end();
@@ -147,8 +147,9 @@ class Tables {
     add_session(session_row, session);
     RowText pass_row(trials, Delimited::kCsv);
     const std::vector<PassSpan> spans = pass_spans(reader);
+    const std::vector<const char*> statuses = pass_statuses(reader);
     for (const auto& pass : reader.passes()) {
-      add_pass(pass_row, session, index_, pass, spans.at(index_));
+      add_pass(pass_row, session, index_, pass, statuses[index_], spans.at(index_));
       ++index_;
     }
     passes += index_;

@@ -47,13 +47,13 @@ std::vector<ColumnDoc> pass_docs(const Levels& phases, const std::vector<ColumnD
   docs.push_back(pass("practice"));
   docs.back().levels = {{"0", "part of the study"}, {"1", "practice, never scored"}};
   docs.push_back(pass("status"));
-  docs.back().levels = {{"completed", "came to its end"}, {"aborted", "was broken off"}};
+  docs.back().levels = status_levels();
   merge_columns(facts, docs);
   return docs;
 }
 
 void add_pass_cells(const Session& session, const record::PassRow& pass, std::size_t index,
-                    const std::optional<PassSpan>& span, RowText& row) {
+                    const char* status, const std::optional<PassSpan>& span, RowText& row) {
   const ExportSession& source = session.source;
   row.add(source.info.subject).add(source.number);
   row.add(truth(source.info.simulated)).add(truth(source.info.pilot));
@@ -66,7 +66,7 @@ void add_pass_cells(const Session& session, const record::PassRow& pass, std::si
   row.add(pass.condition).add(record::name_of(pass.phase));
   row.add(pass.trial).add(pass.block).add(pass.repetition).add(pass.attempt);
   row.add(pass.practice ? 1 : 0);
-  row.add(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  row.add(status);
 }
 
 /// The passes of a session. @returns how many there are
@@ -76,11 +76,13 @@ std::size_t write_pass_table(const NewFolder& out, const Session& session,
   const bool timed = record::imported_from(reader).empty();
   const PassFacts own = pass_facts(reader);
   const std::vector<record::PassRow> passes = reader.passes();
+  const std::vector<const char*> statuses = pass_statuses(reader);
   const std::vector<PassSpan> spans = pass_spans(reader);
   std::string text = heading(pass_docs({}, facts), Delimited::kCsv);
   RowText row(text, Delimited::kCsv);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    add_pass_cells(session, passes[i], i, timed ? std::optional(spans.at(i)) : std::nullopt, row);
+    add_pass_cells(session, passes[i], i, statuses[i],
+                   timed ? std::optional(spans.at(i)) : std::nullopt, row);
     for (const ColumnDoc& column : facts) {
       const auto cell = own.cells[i].find(column.name);
       row.add(cell != own.cells[i].end() ? cell->second : std::string());

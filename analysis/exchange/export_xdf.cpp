@@ -105,8 +105,8 @@ void write_devices(const SessionReader& reader, XdfFile& file, std::uint32_t str
 }
 
 /// A pass as JSON, with what it presented and what was answered.
-std::string pass_text(const record::PassRow& pass, std::size_t index, double duration,
-                      const std::map<std::string, std::string>& facts) {
+std::string pass_text(const record::PassRow& pass, std::size_t index, const char* status,
+                      double duration, const std::map<std::string, std::string>& facts) {
   nlohmann::ordered_json json;
   json["pass"] = index;
   json["trial"] = pass.trial;
@@ -115,7 +115,7 @@ std::string pass_text(const record::PassRow& pass, std::size_t index, double dur
   json["block"] = pass.block;
   json["attempt"] = pass.attempt;
   json["practice"] = pass.practice;
-  json["status"] = pass.status == record::PassStatus::kCompleted ? "completed" : "aborted";
+  json["status"] = status;
   json["duration"] = duration;
   for (const auto& [name, value] : facts) {
     json[name] = value;
@@ -126,9 +126,11 @@ std::string pass_text(const record::PassRow& pass, std::size_t index, double dur
 void write_pass_markers(const SessionReader& reader, XdfFile& file, std::uint32_t stream) {
   const PassFacts facts = pass_facts(reader);
   const std::vector<record::PassRow> passes = reader.passes();
+  const std::vector<const char*> statuses = pass_statuses(reader);
   const std::vector<PassSpan> spans = pass_spans(reader);
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    file.add(stream, spans.at(i).onset, pass_text(passes[i], i, spans[i].duration, facts.cells[i]));
+    file.add(stream, spans.at(i).onset,
+             pass_text(passes[i], i, statuses[i], spans[i].duration, facts.cells[i]));
   }
 }
 

@@ -160,6 +160,28 @@ class TickTimes {
 
 }  // namespace
 
+std::vector<const char*> pass_statuses(const record::SessionReader& reader) {
+  std::vector<const char*> statuses;
+  for (const record::PassRow& pass : reader.passes()) {
+    statuses.push_back(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+  }
+  for (const record::OutOfTimeRow& row : reader.rows<record::OutOfTimeRow>()) {
+    const auto pass = static_cast<std::size_t>(row.pass);
+    if (row.again && pass < statuses.size() && statuses[pass] != std::string_view("aborted")) {
+      statuses[pass] = "out of time";
+    }
+  }
+  return statuses;
+}
+
+const Levels& status_levels() {
+  static const Levels levels{
+      {"completed", "came to its end"},
+      {"aborted", "was broken off, or its answer was taken back"},
+      {"out of time", "an answer came too early or too late; the trial was presented again"}};
+  return levels;
+}
+
 std::vector<PassSpan> pass_spans(const record::SessionReader& reader) {
   const TickTimes times(reader);
   std::vector<PassSpan> spans;

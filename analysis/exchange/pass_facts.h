@@ -5,16 +5,7 @@
 #include <vector>
 
 #include "analysis/exchange/columns.h"
-
-namespace haptrial::record {
-
-class SessionReader;
-}
-
-namespace haptrial::record {
-
-class SessionReader;
-}
+#include "core/record/read/session_reader_forward.h"
 
 namespace haptrial::exchange {
 
@@ -31,6 +22,12 @@ PassFacts pass_facts(const record::SessionReader& reader);
 
 /// Adds the columns that are not there, by name.
 void merge_columns(const std::vector<ColumnDoc>& more, std::vector<ColumnDoc>& columns);
+
+/// The status of each pass in a word. A pass whose answer was taken back is aborted; one with an
+/// answer that came too early or too late, so that the trial was presented again, is out of time.
+std::vector<const char*> pass_statuses(const record::SessionReader& reader);
+/// These words and what they mean.
+const Levels& status_levels();
 
 /// When a pass was, by the session's clock.
 struct PassSpan {

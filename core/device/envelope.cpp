@@ -198,8 +198,8 @@ void Envelope::watch_force(const Eigen::Vector3d& force, double dt,
   }
   acted.stored = intent.stored;
   acted.added = intent.added;
-  // While the force ramps, what the springs hold is not what the protocol says.
-  const bool ramps = released_ || since_start_ < limits_.ramp_in;
+  // While the force ramps or is held back, what the springs hold is not what the protocol says.
+  const bool ramps = released_ || bounded_ || since_start_ < limits_.ramp_in;
   const Eigen::Vector3d moved = last_position_ - watched_position_;
   const bool first = !std::exchange(has_watched_, true);
   watched_position_ = last_position_;
@@ -245,7 +245,7 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
   const Eigen::Vector3d grown = share * (wanted + left_over);
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
   const double passed = longer(grown, most) ? most / grown.norm() : 1.0;
-  followed_ = passed * (wanted + left_over) - intent.stimulus;
+  followed_ = passed * (wanted + left_over - intent.stimulus);
   intent.push = passed * share * (intent.push + left_over);
   intent.stimulus *= passed * share;
   return passed * grown;

@@ -100,7 +100,9 @@ double ReadingWatch::way_in_two_ticks(double dt) noexcept {
 
 bool ReadingWatch::jitters(const Eigen::Vector3d& step, double dt) noexcept {
   odd_for_ = std::max(0.0, odd_for_ - dt);
-  const double free = std::max(kResolution, kAcceleration * dt * dt) + way_in_two_ticks(dt);
+  // A coarse encoder goes on by whole steps now and then; one that jitters turns back by them.
+  const double resolution = std::max(kResolution, 1.5 * smallest_step_);
+  const double free = std::max(resolution, kAcceleration * dt * dt) + way_in_two_ticks(dt);
   if ((step - step_).norm() <= free) {
     return false;
   }

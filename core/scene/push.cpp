@@ -69,6 +69,13 @@ Measured::Measured(const MeasuredParameters& parameters, const Setting& setting)
   require(parameters.gain.allFinite(), "Measured: gain must be finite");
 }
 
+void Measured::adopt(const Measured& before) noexcept {
+  value_ = before.value_;
+  share_ = before.share_;
+  begun_ = before.begun_;
+  slow_.adopt(before.slow_);
+}
+
 Vector3d Measured::force(const Felt& felt, FieldState& state) noexcept {
   const std::size_t at = parameters_.channel;
   const bool there = at < felt.channels.size() && std::isfinite(felt.channels[at]);

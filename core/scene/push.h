@@ -96,6 +96,7 @@ class Measured {
  public:
   Measured(const MeasuredParameters& parameters, const Setting& setting);
   void start(const PointState&) noexcept { begun_ = false; }
+  void adopt(const Measured& before) noexcept;
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
 
  private:

@@ -11,9 +11,17 @@ using protocols::TrialEnd;
 std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
   const record::Resumed& earlier = p_.record.earlier();
   std::optional<PlannedTrial> trial = p_.trials.next(last);
+  std::optional<PlannedTrial> done;  // by an earlier run, last of what is passed over here
+  const auto pages_after = [&](const PlannedTrial& over) {
+    ended_at_page_ = !p_.pages.after_block(over.block, over.block_name, true);
+    return !ended_at_page_;
+  };
   while (trial) {
     const int most = p_.request.max_trials;
     if (most > 0 && !trial->practice && trial->trial > most) {
+      if (done && done->block == trial->block) {
+        pages_after(*done);  // nothing further of its block comes
+      }
       return std::nullopt;
     }
     const auto before = outcome_of(earlier, *trial, p_.trials.phases().back());
@@ -23,10 +31,9 @@ std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
       return trial;
     }
     trial = p_.trials.next(&*before);
-    const PlannedTrial& over = before->trial;
-    const bool block_over = !trial || trial->block != over.block;
-    if (block_over && !p_.pages.after_block(over.block, over.block_name, true)) {
-      ended_at_page_ = true;
+    done = before->trial;
+    const bool block_over = !trial || trial->block != done->block;
+    if (block_over && !pages_after(*done)) {
       return std::nullopt;
     }
   }

@@ -364,13 +364,19 @@ std::string next_row(std::istringstream& lines) {
   return row;
 }
 
-/// Removes the rows whose first column names the participant; a table without any other goes.
-void remove_rows(const fs::path& file, const std::string& subject) {
+/// Removes the rows whose first column is the participant or one of the participant's session
+/// files; a table without any other goes.
+void remove_rows(const fs::path& file, const std::string& subject,
+                 const std::vector<fs::path>& sessions) {
+  std::set<std::string> own{subject};
+  for (const fs::path& session : sessions) {
+    own.insert(session.filename().string());
+  }
   std::istringstream lines(file_text(file));
   std::string kept;
   bool rows = false;
   for (std::string row = next_row(lines); !row.empty(); row = next_row(lines)) {
-    if (!has_word(row.substr(0, row.find(',')), subject)) {
+    if (!own.contains(row.substr(0, row.find(',')))) {
       rows = rows || !kept.empty();
       kept += row;
     }
@@ -445,7 +451,7 @@ void withdraw(const Withdrawal& found, const std::vector<fs::path>& folders,
     }
   }
   for (const fs::path& file : found.tables) {
-    remove_rows(file, subject);
+    remove_rows(file, subject, found.sessions);
   }
   for (std::size_t i = 0; i < folders.size(); ++i) {
     note_files(folders[i], kWithdrawn, digests[i]);

@@ -130,7 +130,8 @@ def study(where: Path | Session | Iterable[Path | Session], table: str = "trials
           columns: Sequence[str] | None = None, threads: int = 0) -> pd.DataFrame:
     """One table of all sessions of a study as one frame.
 
-    where    session files (or Sessions), a folder of them (*.h5), or a list of both
+    where    session files (or Sessions), a folder of them (*.h5), or a list of both; of a folder
+             with other sessions pilots are left out, as `haptrial analyze` does
     table    its name, "trials" or "samples" for example
     columns  those to read, all without
     threads  0: as many as there are processors
@@ -182,7 +183,7 @@ def _files(where: Path | Session | Iterable[Path | Session]) -> list[str]:
             inside = sorted(str(file) for file in path.glob("*.h5"))
             if not inside:
                 raise ValueError(f"{path}: has no session file (.h5)")
-            files += inside
+            files += [file for file in inside if not _info(file)["pilot"]] or inside
         else:
             files.append(str(path))
     if not files:

@@ -202,6 +202,12 @@ RunEnd run_command(const RunOptions& asked) {
     fmt::print("{}\n", chosen);
     std::fflush(stdout);
   }
+  if (const std::string language = begun_language(options, *experiment.definition);
+      !language.empty()) {
+    fmt::print("language {}, in which the session began\n", language);
+    options.language = language;
+    experiment = load_experiment(options.definition, options.language, given_keys(options.set));
+  }
   warn_of_ended_study(options, experiment);
   if (!options.case_name.empty()) {
     experiment.definition =

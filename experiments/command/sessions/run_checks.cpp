@@ -21,6 +21,7 @@
 #include "experiments/study/study_files.h"
 #include "protocols/definition/definition.h"
 #include "protocols/interface/protocol.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/interface/study_rules.h"
 
 namespace haptrial::experiments {
@@ -250,6 +251,18 @@ std::string session_seed(const RunOptions& options, const fs::path& own) {
   }
   const std::vector<EarlierSession> earlier = earlier_sessions(options.out, options.pilot, own);
   return options.pilot || earlier.empty() ? "1" : fmt::to_string(earlier.front().info.seed);
+}
+
+std::string begun_language(const RunOptions& options, const protocols::Definition& setup) {
+  const fs::path own = session_file(options, setup);
+  std::string language;
+  if (options.resume && options.language.empty() && record::SessionWriter::can_resume(own)) {
+    for (const record::EventRow& event :
+         record::SessionReader(record::partial_path(own)).events()) {
+      language = event.kind == protocols::kLanguageEvent ? event.text : language;
+    }
+  }
+  return language;
 }
 
 std::optional<int> recorded_number(const RunOptions& options, const fs::path& own) {

@@ -27,6 +27,9 @@ void check_session_file(const RunOptions& options, const std::filesystem::path& 
 /// @param own  file of the session that is to be recorded
 std::string session_seed(const RunOptions& options, const std::filesystem::path& own);
 
+/// The language of the session that is to be resumed, if none was given; empty: the definition's.
+std::string begun_language(const RunOptions& options, const protocols::Definition& setup);
+
 /// The number by which the participant's session that is resumed, or one in the folder, was
 /// recorded; none if there is no such session or an older file does not have it.
 /// @param own  file of the session that is to be recorded

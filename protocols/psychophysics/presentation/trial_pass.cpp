@@ -141,6 +141,8 @@ Drive TrialPass::drive(const IntervalRun& run, std::size_t device,
     drive.force *= most / size;
     drive.intent.push *= most / size;
     drive.intent.stimulus *= most / size;
+    drive.intent.stored *= most / size;
+    drive.intent.added *= most / size;
     saturated_ = true;
   }
   return drive;
