@@ -94,7 +94,7 @@ std::optional<LedPass> led_pass(const record::SessionReader& reader, const recor
 
 std::vector<LedPass> led_passes(const record::SessionReader& reader) {
   std::vector<LedPass> result;
-  if (!reader.has(record::table_of<LinkRow>())) {
+  if (reader.count(record::table_of<LinkRow>()) == 0) {
     return result;
   }
   std::map<std::int32_t, record::NetworkRow> networks;

@@ -1,6 +1,7 @@
 #include "core/scene/deformable_object.h"
 
 #include <limits>
+#include <utility>
 
 #include "core/deformable/touch/prepared.h"
 
@@ -49,13 +50,30 @@ void DeformableObject::start(const PointState& hand) noexcept {
 
 /// A body that moves goes on moving, and the contact with one that rests goes on, also if its
 /// tissue changes; any other begins at rest under the hand.
-void DeformableObject::adopt(const DeformableObject& before) noexcept {
+void DeformableObject::adopt(DeformableObject& before) noexcept {
   hand_ = before.hand_;
+  if (is_same_of_own_rate(before)) {
+    std::swap(touch_, before.touch_);
+    return;
+  }
   if (touch_ && before.touch_) {
     touch_->adopt(*before.touch_, to_body(hand_));
   } else if (touch_) {
     touch_->start(to_body(hand_));
   }
+}
+
+/// A thread of its own steps such a body, so that its state can't be taken over between two ticks.
+bool DeformableObject::is_same_of_own_rate(const DeformableObject& other) const noexcept {
+  const deformable::TouchOptions& tool = parameters_.tool;
+  const deformable::TouchOptions& its = other.parameters_.tool;
+  return parameters_.gives && parameters_.gives == other.parameters_.gives &&
+         parameters_.moving == other.parameters_.moving &&
+         parameters_.pose.position == other.parameters_.pose.position &&
+         parameters_.pose.orientation.coeffs() == other.parameters_.pose.orientation.coeffs() &&
+         tool.radius == its.radius && tool.stiffness == its.stiffness &&
+         tool.friction.static_friction == its.friction.static_friction &&
+         tool.friction.dynamic_friction == its.friction.dynamic_friction;
 }
 
 Vector3d DeformableObject::force(const Felt& felt, FieldState& state) noexcept {

@@ -44,13 +44,15 @@ class DeformableObject {
   DeformableObject(const DeformableObjectParameters& parameters, const Setting& setting);
 
   void start(const PointState& hand) noexcept;
-  void adopt(const DeformableObject& before) noexcept;
+  /// The contact goes on. A body of its own rate goes on as a whole, and is gone from `before`.
+  void adopt(DeformableObject& before) noexcept;
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
   /// Null: nothing is felt.
   const deformable::BodyTouch* touch() const noexcept { return touch_.get(); }
 
  private:
   Eigen::Vector3d to_body(const Eigen::Vector3d& p) const noexcept;
+  bool is_same_of_own_rate(const DeformableObject& other) const noexcept;
 
   DeformableObjectParameters parameters_;
   std::unique_ptr<deformable::BodyTouch> touch_;

@@ -119,11 +119,11 @@ struct Scene::Part {
     std::swap(fade_in, other.fade_in);
     std::swap(fade_out, other.fade_out);
   }
-  void adopt_law(const Part& other) noexcept {
+  void adopt_law(Part& other) noexcept {
     std::visit(
         [&](auto& own) {
           using Same = std::decay_t<decltype(own)>;
-          if constexpr (requires(const Same& same) { own.adopt(same); }) {
+          if constexpr (requires(Same& same) { own.adopt(same); }) {
             own.adopt(*std::get_if<Same>(&other.law));
           }
         },

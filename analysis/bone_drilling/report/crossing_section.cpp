@@ -8,6 +8,7 @@
 #include "analysis/bone_drilling/metrics/procedure.h"
 #include "analysis/files/delimited.h"
 #include "core/base/counted.h"
+#include "core/base/definition/table.h"
 #include "core/bone/region/forbidden_region.h"
 #include "core/bone/region/region_setup.h"
 #include "core/record/read/session_reader.h"
@@ -79,9 +80,16 @@ int CrossingProcedure::count() const {
   return sum;
 }
 
+/// Whether a session's definition has regions: a repaired file has empty tables of others, too.
+static bool has_regions(const record::SessionReader& file) {
+  const record::SessionInfo& info = file.info();
+  return file.has(record::table_of<record::CrossingRow>()) &&
+         Table::parse(info.definition, info.definition_name).has("forbidden");
+}
+
 std::vector<CrossingProcedure> load_crossings(const record::SessionReader& file,
                                               std::span<const ProcedureSummary> summaries) {
-  if (!file.has(record::table_of<record::CrossingRow>())) {
+  if (!has_regions(file)) {
     return {};
   }
   const auto rows = file.rows<record::CrossingRow>();
