@@ -1,7 +1,11 @@
 #include "protocols/force_training/force_trials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "core/base/error.h"
+#include "core/record/read/session_reader.h"
 #include "protocols/force_training/guided_passes.h"
 #include "protocols/force_training/path_drawing.h"
 #include "protocols/force_training/recorded_pass.h"
@@ -36,6 +40,22 @@ std::vector<stimulus::Observer*> ForceTrials::observers() {
 record::TableList ForceTrials::tables() const {
   return expert_ ? record::TableList{&record::table_of<record::TutoringRow>()}
                  : record::TableList{};
+}
+
+void ForceTrials::check_resumed(const record::SessionReader& file) const {
+  if (d_.trajectory.from.empty()) {
+    return;
+  }
+  constexpr double kSame = 1e-6;  // [m]
+  const stimulus::Stimulus now = stimulus::make_stimulus(d_.trajectory, d_.force_pattern, 1);
+  for (const record::StimulusRow& row : file.stimuli()) {
+    if ((now.path.at(row.time).position - row.position).norm() > kSame) {
+      throw InputError(
+          fmt::format("{}: was recorded along another path than that of trajectory.from, {}, is "
+                      "now; resume it with the same recording",
+                      file.path().string(), d_.trajectory.from));
+    }
+  }
 }
 
 void ForceTrials::empty_logs(SessionFile& file) {

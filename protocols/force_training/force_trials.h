@@ -27,6 +27,8 @@ class ForceTrials final : public Trials {
   std::vector<stimulus::Observer*> observers() override;
   /// Tables of the expert, if there is one.
   record::TableList tables() const override;
+  /// Refuses a recorded path that is another one by now.
+  void check_resumed(const record::SessionReader& file) const override;
   void empty_logs(SessionFile& file) override;
   std::uint64_t dropped() const override { return expert_ ? expert_->dropped() : 0; }
   void prepare(const PlannedTrial& trial, SessionFile& file) override;
