@@ -210,6 +210,20 @@ std::optional<fs::path> certificate_of(Table& root, const fs::path& machines) {
   return machines.parent_path() / name;
 }
 
+Table with_given(Table root, const fs::path& file, const std::vector<GivenKey>& given) {
+  return given.empty()
+             ? root
+             : Table::parse(with_values(root.source(), file.string(), given), file.string());
+}
+
+/// Whether a key belongs to the lab file: to a table of machines that the definition itself lacks.
+bool is_of_lab(const Table& definition, const std::string& key) {
+  const std::string table = key.substr(0, key.find('.'));
+  const std::vector<std::string>& machines = machine_tables();
+  return definition.has("lab") && !definition.has(table) &&
+         std::find(machines.begin(), machines.end(), table) != machines.end();
+}
+
 }  // namespace
 
 const std::vector<std::string>& machine_tables() {
@@ -227,15 +241,17 @@ const std::vector<std::string>& machine_tables() {
 
 Table load_with_lab(const fs::path& definition, std::span<const GivenKey> given) {
   Table root = Table::load(definition);
-  if (!given.empty()) {
-    root =
-        Table::parse(with_values(root.source(), definition.string(), given), definition.string());
+  std::vector<GivenKey> own;
+  std::vector<GivenKey> of_lab;
+  for (const GivenKey& each : given) {
+    (is_of_lab(root, each.key) ? of_lab : own).push_back(each);
   }
+  root = with_given(std::move(root), definition, own);
   fs::path machines = definition;  // the file that has [device]
   std::vector<NamedText> parts{{root.source(), definition.string()}};
   if (root.has("lab")) {
     const fs::path file = file_of(root, definition);
-    Table lab = Table::load(file);
+    Table lab = with_given(Table::load(file), file, of_lab);
     const std::string text = without_mark(lab.source());
     refuse_key_outside_tables(text, file.string());
     check_tables(lab, root, definition.string());

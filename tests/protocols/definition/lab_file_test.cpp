@@ -70,6 +70,14 @@ class LabFileTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(LabFileTest, AKeyThatIsGivenReachesItsFile) {
+  const std::vector<GivenKey> given{{"device.max_force", "3"}, {"design.participants", "5"}};
+  const Experiment experiment = load_experiment(folder_ / "study.toml", "", given);
+  EXPECT_EQ(experiment.definition->device.max_force, 3.0);
+  EXPECT_EQ(experiment.definition->design.participants, 5);
+  EXPECT_EQ(test::read_text(folder_ / "room/lab.toml"), lab_) << "the file stays as it is";
+}
+
 TEST_F(LabFileTest, MeansTheSameAsOneFile) {
   const Experiment two = load_experiment(folder_ / "study.toml");
   EXPECT_EQ(two.definition->lab, "room/lab.toml");
