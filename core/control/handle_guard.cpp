@@ -39,8 +39,7 @@ constexpr double kSlow = 4.0;      // a hand's own movement ends about there [Hz
 double calm_damping(const HandleLoop& loop) {
   constexpr double kLargestKnock = 0.25;  // [N]
   const double carried = damping_of_bare_handle(std::numeric_limits<double>::infinity(), loop);
-  const double step = velocity_of_a_step(loop);
-  return step > 0.0 ? std::min(carried, kLargestKnock / step) : carried;
+  return loop.velocity_step > 0.0 ? std::min(carried, kLargestKnock / loop.velocity_step) : carried;
 }
 
 }  // namespace

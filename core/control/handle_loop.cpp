@@ -82,9 +82,9 @@ double lightest(double heaviest, Holds holds) {
 
 }  // namespace
 
-double velocity_of_a_step(const HandleLoop& loop) noexcept {
-  const double n = loop.velocity_window;
-  return 1.5 * loop.quantum * loop.rate * n / (n * n - 1.0);
+double velocity_of_a_step(double quantum, int window, double rate) noexcept {
+  const double n = window;
+  return 1.5 * quantum * rate * n / (n * n - 1.0);
 }
 
 double spectral_radius(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
@@ -112,8 +112,7 @@ bool is_calm(const PdGains& gains, const HandleLoop& loop, const HeldBy& hand) {
 }
 
 double lightest_calm_hand(const PdGains& gains, const HandleLoop& loop, double heaviest) {
-  return lightest(heaviest,
-                  [&](double mass) { return is_calm(gains, loop, held_by_hand(mass)); });
+  return lightest(heaviest, [&](double mass) { return is_calm(gains, loop, held_by_hand(mass)); });
 }
 
 double damping_of_bare_handle(double damping, const HandleLoop& loop) noexcept {

@@ -6,18 +6,21 @@ namespace haptrial::control {
 
 /// The part of the loop between a spring and damper in software and the hand, along one axis.
 struct HandleLoop {
-  double handle_mass{0.22};  // of the bare handle, m_h > 0 [kg]
-  double rate{1000.0};       // of the loop, 1 / T > 0 [Hz]
-  int velocity_window{8};    // readings in the slope that estimates velocity >= 2
-  int force_delay{1};        // ticks from a command to the force >= 1
-  double quantum{0.0};       // resolution of the encoders >= 0 [m]
+  double handle_mass{0.22};   // of the bare handle, m_h > 0 [kg]
+  double rate{1000.0};        // of the loop, 1 / T > 0 [Hz]
+  int velocity_window{8};     // readings in the slope that estimates velocity >= 2
+  int force_delay{1};         // ticks from a command to the force >= 1
+  double velocity_step{0.0};  // velocity_of_a_step() of the device >= 0 [m/s]
 };
 
 /// The velocity that the estimate shows of a handle that is still, by one step of the encoder in
 /// the middle of its window [m/s]:
 ///
 ///     dv = 1.5 q n / ((n^2 - 1) T)
-double velocity_of_a_step(const HandleLoop& loop) noexcept;
+///
+/// @param quantum  q of the encoder >= 0 [m]  @param window  n readings >= 2  @param rate  1 / T
+/// [Hz]
+double velocity_of_a_step(double quantum, int window, double rate) noexcept;
 
 /// A hand that adds to the handle, along one axis. The default: nobody holds it.
 struct HeldBy {

@@ -12,7 +12,7 @@ namespace haptrial::scene {
 /// tick to the next. What the hand's way does not explain then comes by degrees, by at most 200
 /// N/s:
 ///
-///     |f - f before| <= k |way| + b (|v| + |v before|) + 200 N/s T
+///     |f - f before| <= k |way| + b (|v - v before| + |v| |way| / 1 mm) + 200 N/s T
 ///
 /// so that the old force goes as a rest that only shrinks. Servo thread: no allocation, lock, I/O
 /// or throw.

@@ -239,8 +239,9 @@ control::HandleLoop handle_loop(const Definition& d) {
   loop.handle_mass = d.hand.handle_mass;
   loop.rate = d.rate;
   loop.force_delay = d.device.force_delay;
-  loop.quantum = d.device.position_quantum;
   loop.velocity_window = device::readings_in_window(d.device.velocity_window, d.rate);
+  loop.velocity_step =
+      control::velocity_of_a_step(d.device.position_quantum, loop.velocity_window, d.rate);
   for (const device::VendorDevice& vendor : device::vendor_devices()) {
     // A board is driven only if the definition has its table, which names its line.
     const bool stated = d.document != nullptr && d.root().has(vendor.table);

@@ -298,7 +298,7 @@ void HandleReport::note_taken(const Load& load) {
 
 /// A damper feels the steps of a coarse encoder. @returns the force of one [N]
 double HandleReport::knock_of(const Load& load) const {
-  return load.damping * control::velocity_of_a_step(loop_of(load));
+  return load.damping * loop_of(load).velocity_step;
 }
 
 void HandleReport::note_knocks(const Load& load) {
