@@ -89,6 +89,9 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
     inverted_steps_ = motion_->inverted_steps();
   }
   note(tool);
+  if (!grasps()) {
+    bound_change(before, options_.stiffness * way.norm(), kFastestOfMoving * period_, contact_);
+  }
   if (contact_.state != ContactState::kFree) {
     ++counts_.contact;
     counts_.crowded += ball_.crowded() ? 1 : 0;
@@ -96,9 +99,6 @@ const contact::Contact& MovingTouch::tick(const Vector3d& tool, double) noexcept
     limit();
   } else {
     account_.open();
-  }
-  if (!grasps()) {
-    bound_change(before, options_.stiffness * way.norm(), kFastestOfMoving * period_, contact_);
   }
   tool_ = tool;
   if (shape_ && ticks_++ % kTicksOfPicture == 0) {

@@ -89,13 +89,13 @@ const contact::Contact& TwoRateTouch::tick(const Vector3d& tool, double) noexcep
   if (touches) {
     note();
   }
+  if (finite) {
+    bound_change(before, options_.stiffness * way, kFastestOfMoving * period_, contact_);
+  }
   if (contact_.state != ContactState::kFree) {
     limit();
   } else if (finite) {
     account_.open();
-  }
-  if (finite) {
-    bound_change(before, options_.stiffness * way, kFastestOfMoving * period_, contact_);
   }
   ++tick_;
   return contact_;
