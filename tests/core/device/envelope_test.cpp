@@ -432,6 +432,29 @@ TEST(EnvelopeTest, TheForceDoesNotGrowWhileReadingsAreSuspicious) {
   }
 }
 
+/// A hand that keeps still gives readings that are equal, as a frozen device does.
+TEST(EnvelopeTest, APulseThatIsHeldBackLeavesNothingBehind) {
+  for (const int ticks : {5, 10, 20, 50}) {
+    Envelope envelope(open_limits());
+    double impulse = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      // The hand gives way by a step of the encoder now and then, and is read again.
+      envelope.check(true, at({0.0, i > 112 ? -1e-5 * (i / 7) : 0.0, 0.0}));
+      const bool on = i >= 100 && i < 100 + ticks;
+      ForceIntent intent;
+      intent.stimulus = on ? Vector3d(0.0, -4.0, 0.0) : Vector3d::Zero();
+      intent.ended = i == 100 + ticks ? Vector3d(0.0, -4.0, 0.0) : Vector3d::Zero();
+      const double force = envelope.limit(intent.stimulus, kDt, intent).y();
+      ASSERT_EQ(envelope.fault(), Fault::kNone);
+      ASSERT_LE(force, 0.0) << "never the other way, " << ticks << " ms, tick " << i;
+      ASSERT_TRUE(on || force == 0.0) << ticks << " ms, tick " << i;
+      impulse += kDt * force;
+    }
+    EXPECT_LT(impulse, -0.2 * 4.0 * kDt * ticks) << "some of it comes";
+    EXPECT_GE(impulse, -4.0 * kDt * ticks - 1e-9);
+  }
+}
+
 /// A hand that pushes just as hard as a wall that grows stays where it is, to the last bit.
 TEST(EnvelopeTest, AHandThatTensesAgainstAWallIsNotFrozen) {
   constexpr double kMass = 1.0;
