@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "analysis/python/arrays.h"
 #include "core/base/error.h"
@@ -196,7 +197,8 @@ class TableRead {
     }
     readers_[piece.file].columns(*table_, piece.first, piece.count, targets);
     for (const record::ColumnTarget& target : targets) {
-      if (table_->name() == "trials" && table_->fields()[target.field].column.name == "status") {
+      const std::string_view column = table_->fields()[target.field].column.name;
+      if (table_->name() == "trials" && column == "status") {
         take_back(piece, target.values);
       }
     }

@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include "core/record/rows/trial_rows.h"
+
 namespace haptrial::protocols::replay_test {
 namespace {
 
