@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "core/record/rows/trial_rows.h"
+#include "core/record/rows/trial_facts.h"
 
 namespace haptrial::protocols::replay_test {
 namespace {
@@ -18,7 +18,7 @@ PassRow pass_of(int trial, PassStatus status, int attempt = 1) {
   PassRow pass;
   pass.trial = trial;
   pass.condition = "one";
-  pass.phase = record::kPresentedPhase;
+  pass.phase = record::Phase::kTest;
   pass.status = status;
   pass.attempt = attempt;
   return pass;
@@ -30,7 +30,7 @@ class RecordedOutcomeTest : public testing::Test {
     PlannedTrial trial;
     trial.trial = 3;
     trial.condition = "one";
-    return recorded_outcome({passes_, {}, skipped_, taken_back_}, trial, record::kPresentedPhase);
+    return recorded_outcome({passes_, {}, skipped_, taken_back_}, trial, record::Phase::kTest);
   }
   std::vector<PassRow> passes_;
   std::vector<record::SkippedRow> skipped_;
