@@ -242,7 +242,7 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
   const Eigen::Vector3d grown = share * (wanted + left_over);
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
   double passed = longer(grown, most) ? most / grown.norm() : 1.0;
-  // What was held back comes by degrees, as a share: nothing of it outlives the force itself.
+  // A force that was held back comes by degrees, as a share: nothing of it outlives the force.
   const double more = limits_.change_time > 0.0 ? dt / limits_.change_time : 1.0;
   comes_back_ = bounded_ ? passed : std::min(1.0, comes_back_ + more);
   passed = std::min(passed, comes_back_);

@@ -105,9 +105,11 @@ struct Scene::Part {
       lender = from;
     }
   }
-  /// Acts anew, and so with its own numbers.
+  /// Acts, and so with its own numbers; its contact and filters go on.
   void take_own_law() noexcept {
-    before = nullptr;
+    if (Part* from = std::exchange(before, nullptr)) {
+      adopt_law(*from);
+    }
     if (Part* has_own = std::exchange(lender, nullptr)) {
       swap_law(*has_own);
       adopt_law(*has_own);
@@ -123,7 +125,7 @@ struct Scene::Part {
     std::visit(
         [&](auto& own) {
           using Same = std::decay_t<decltype(own)>;
-          if constexpr (requires(Same& same) { own.adopt(same); }) {
+          if constexpr (requires(Same & same) { own.adopt(same); }) {
             own.adopt(*std::get_if<Same>(&other.law));
           }
         },
@@ -228,7 +230,6 @@ void Scene::start_from(Scene& before) noexcept {
     part.time = old.time;
     part.state = old.state;
     part.passing = old.passing;
-    part.adopt_law(old);
   }
 }
 
@@ -314,6 +315,9 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
     return Vector3d::Zero();
   }
   for (Part& part : parts_) {
+    if (part.before != nullptr) {
+      part.take_own_law();  // nothing was switched since start_from()
+    }
     part.state.work += part.state.force.dot(hand.position - before_);
     part.state.weight = part.fade.weight();
     part.state.force.setZero();

@@ -100,7 +100,7 @@ VideoPlayer::VideoPlayer(const fs::path& file, int width, int height, const std:
   reader_ = std::jthread([this](const std::stop_token& stop) { read_pictures(stop); });
 }
 
-/// Who reads from a child that has gone comes back at once.
+/// Reading from a child that has gone ends at once.
 VideoPlayer::~VideoPlayer() {
   picture_maker_->kill();
   if (sound_maker_) {

@@ -29,8 +29,8 @@ std::vector<std::string> languages_of(const std::filesystem::path& definition);
 /// @throws InputError if there is neither, or the file is wrong
 Translations translations_for(const std::filesystem::path& definition, const std::string& language);
 
-/// The same from the text of that file, which a session keeps; the program's own words alone if it
-/// is empty.
+/// Reads them from the text of that file, which a session keeps; from an empty one the program's
+/// own words alone.
 /// @param session  that sentences name  @throws InputError if the text is wrong
 Translations recorded_translations(const std::string& language, std::string text,
                                    std::string_view session);

@@ -19,7 +19,7 @@ inline constexpr const char* kLanguageTextsEvent = "language_texts";
 /// @throws InputError if it is no definition that this version knows
 Table recorded_definition(const record::SessionReader& reader, int trial);
 
-/// What a session says beside its definition of how it was seen: mirrored or not.
+/// Takes over how a session was seen, which its events say: mirrored or not.
 void show_as_recorded(const record::SessionReader& reader, Definition& definition);
 
 }  // namespace haptrial::protocols

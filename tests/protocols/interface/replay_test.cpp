@@ -1,4 +1,4 @@
-// What files of an earlier run say of a trial.
+// Outcomes of trials as the files of an earlier run have them.
 
 #include "protocols/interface/replay.h"
 
