@@ -199,17 +199,21 @@ class TableRead {
     for (const record::ColumnTarget& target : targets) {
       const std::string_view column = table_->fields()[target.field].column.name;
       if (table_->name() == "trials" && column == "status") {
-        take_back(piece, target.values);
+        take_back(piece, table_->fields()[target.field].column.bytes, target.values);
       }
     }
   }
 
   /// A pass whose answer the experimenter took back counts as aborted, as SessionReader has it.
-  void take_back(const Piece& piece, std::uint8_t* status) const {
+  /// @param bytes  of each status, a word
+  void take_back(const Piece& piece, std::size_t bytes, std::uint8_t* status) const {
+    constexpr std::string_view kAborted = "aborted";
     for (const record::TakenBackRow& row : readers_[piece.file].rows<record::TakenBackRow>()) {
       const auto pass = static_cast<std::uint64_t>(row.pass);
-      if (pass >= piece.first && pass < piece.first + piece.count) {
-        status[pass - piece.first] = static_cast<std::uint8_t>(record::PassStatus::kAborted);
+      if (pass >= piece.first && pass < piece.first + piece.count && bytes >= kAborted.size()) {
+        std::uint8_t* word = status + (pass - piece.first) * bytes;
+        std::fill_n(word, bytes, std::uint8_t{0});
+        std::ranges::copy(kAborted, word);
       }
     }
   }
