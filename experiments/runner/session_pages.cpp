@@ -244,15 +244,16 @@ SessionPages::PageOutcome SessionPages::ask(const Place& place,
   requests.back = false;
   draw();
   bool back = false;
+  bool plays = video != nullptr;
   while (!input.answer() && !back && !requests.abort) {
     if (requests.stopped || requests.pause) {
       p_.pacing.pause_where_asked();
       draw();
     }
     p_.pacing.wait_a_little("page");
-    const bool plays = video && !video->is_over();
-    if (plays && picture != video->picture()) {
+    if (video && (picture != video->picture() || plays == video->is_over())) {
       picture = video->picture();
+      plays = !video->is_over();
       draw();
     }
     for (const render::KeyPress& key : p_.keys.pressed()) {
