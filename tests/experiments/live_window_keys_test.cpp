@@ -132,22 +132,21 @@ TEST_F(LiveWindowKeysTest, DoNotLeaveAPageBeforeItsVideoIsOver) {
   LiveCommand session(command);
   ConsolePerson person(session.line_after("console: "));
   ASSERT_TRUE(person.sees("page")) << session.errors();
-  std::vector<std::string> told;
   EXPECT_TRUE(session.reaches([&] {
     display_->try_key("haptrial", VirtualDisplay::kEnter);
-    told.clear();
-    for (const auto& event : record::SessionReader(folder_ / "out/S01.h5.partial").events()) {
-      if (event.kind == "video") {
-        told.push_back(event.text);
-      }
-    }
-    return told.size() == 2;
+    return person.status()["state"] != "page";
   })) << session.errors();
+  ASSERT_TRUE(person.ask("abort"));
+  session.wait();
+  std::vector<std::string> told;
+  for (const auto& event : record::SessionReader(folder_ / "out/S01.h5.partial").events()) {
+    if (event.kind == "video") {
+      told.push_back(event.text);
+    }
+  }
   ASSERT_EQ(told.size(), 2u);
   EXPECT_THAT(told[0], testing::MatchesRegex("intro.mp4: sha256=[0-9a-f]+"));
   EXPECT_EQ(told[1], "intro.mp4: 1.6 of 1.6 s were shown") << "though Enter was pressed all along";
-  press(VirtualDisplay::kEscape);
-  EXPECT_EQ(session.wait().status, 1);
 }
 
 TEST_F(LiveWindowKeysTest, BeginASessionWithoutAnExperimenter) {
