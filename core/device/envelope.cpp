@@ -244,7 +244,12 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
   double passed = longer(grown, most) ? most / grown.norm() : 1.0;
   // A force that was held back comes by degrees, as a share: nothing of it outlives the force.
   const double more = limits_.change_time > 0.0 ? dt / limits_.change_time : 1.0;
-  comes_back_ = bounded_ ? passed : std::min(1.0, comes_back_ + more);
+  if (bounded_) {
+    comes_back_ = passed;
+  } else {
+    const bool felt = (1.0 - comes_back_) * grown.norm() > kNotFelt;
+    comes_back_ = felt ? std::min(1.0, comes_back_ + more) : 1.0;
+  }
   passed = std::min(passed, comes_back_);
   followed_ = passed * (wanted + left_over - intent.stimulus);
   intent.push = passed * share * (intent.push + left_over);
