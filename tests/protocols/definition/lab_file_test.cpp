@@ -71,9 +71,9 @@ class LabFileTest : public testing::Test {
 };
 
 TEST_F(LabFileTest, AKeyThatIsGivenReachesItsFile) {
-  const std::vector<GivenKey> given{{"device.max_force", "3"}, {"design.participants", "5"}};
+  const std::vector<GivenKey> given{{"device.max_force", "20"}, {"design.participants", "5"}};
   const Experiment experiment = load_experiment(folder_ / "study.toml", "", given);
-  EXPECT_EQ(experiment.definition->device.max_force, 3.0);
+  EXPECT_EQ(experiment.definition->device.max_force, 20.0);
   EXPECT_EQ(experiment.definition->design.participants, 5);
   EXPECT_EQ(test::read_text(folder_ / "room/lab.toml"), lab_) << "the file stays as it is";
 }
