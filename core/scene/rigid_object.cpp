@@ -142,11 +142,12 @@ Vector3d RigidObject::force(const Felt& felt, FieldState& state) noexcept {
   return force;
 }
 
-/// Ridges and the moment at which friction gives way are steps that are meant.
+/// Ridges, the moment at which friction gives way, and what another renderer than a proxy does are
+/// steps that are meant.
 Vector3d RigidObject::follow(const Vector3d& force, const Felt& felt, FieldState& state) noexcept {
   const bool gives_way = state.sliding && !slid_;
   slid_ = state.sliding;
-  if (relief_.highest > 0.0 || gives_way) {
+  if (relief_.highest > 0.0 || gives_way || !contact::kind_of(parameters_.renderer).passive) {
     end_.start();
   }
   state.limited = state.limited || force.norm() > limit_;
