@@ -180,6 +180,9 @@ void Envelope::watch_readings(double dt) noexcept {
   if (readings_.in_doubt()) {
     bound_ = std::max(0.0, std::min(bound_, last_force_.norm()) - kFallInDoubt * dt);
   }
+  if (bounded_ && !suspicious) {
+    go_over();  // what was held back comes by degrees
+  }
   bounded_ = suspicious;
 }
 
@@ -196,7 +199,7 @@ void Envelope::watch_force(const Eigen::Vector3d& force, double dt,
   acted.stored = intent.stored;
   acted.added = intent.added;
   // While the force ramps or is held back, what the springs hold is not what the protocol says.
-  const bool ramps = released_ || comes_back_ < 1.0 || since_start_ < limits_.ramp_in;
+  const bool ramps = released_ || bounded_ || since_start_ < limits_.ramp_in;
   const Eigen::Vector3d moved = last_position_ - watched_position_;
   const bool first = !std::exchange(has_watched_, true);
   watched_position_ = last_position_;
@@ -241,16 +244,7 @@ Eigen::Vector3d Envelope::target(const Eigen::Vector3d& wanted, double dt,
   const Eigen::Vector3d left_over = blend(wanted - intent.stimulus - intent.ended, dt);
   const Eigen::Vector3d grown = share * (wanted + left_over);
   const double most = bounded_ ? std::min(bound_, limits_.max_force) : limits_.max_force;
-  double passed = longer(grown, most) ? most / grown.norm() : 1.0;
-  // A force that was held back comes by degrees, as a share: nothing of it outlives the force.
-  const double more = limits_.change_time > 0.0 ? dt / limits_.change_time : 1.0;
-  if (bounded_) {
-    comes_back_ = passed;
-  } else {
-    const bool felt = (1.0 - comes_back_) * grown.norm() > kNotFelt;
-    comes_back_ = felt ? std::min(1.0, comes_back_ + more) : 1.0;
-  }
-  passed = std::min(passed, comes_back_);
+  const double passed = longer(grown, most) ? most / grown.norm() : 1.0;
   followed_ = passed * (wanted + left_over - intent.stimulus);
   intent.push = passed * share * (intent.push + left_over);
   intent.stimulus *= passed * share;
@@ -288,7 +282,6 @@ void Envelope::release() noexcept {
 
 void Envelope::engage() noexcept {
   released_ = goes_over_ = false;
-  comes_back_ = 1.0;
   since_start_ = 0.0;
   followed_.setZero();
   left_over_.setZero();

@@ -110,7 +110,6 @@ class Envelope {
   bool goes_over_{false};
   double bound_{0.0};  // of the force while readings are suspicious [N]
   bool bounded_{false};
-  double comes_back_{1.0};  // share of the force, since it was held back
   bool released_{false};
   double since_start_{0.0};    // or engage() [s]
   double since_release_{0.0};  // [s]
