@@ -24,7 +24,8 @@ std::int64_t begin_of(const record::SessionReader& reader, int trial) {
   }
   std::uint64_t first = passes.front().first_sample;
   for (const record::PassRow& pass : passes) {
-    first = trial > 0 && pass.trial == trial ? pass.first_sample : first;
+    const bool is_asked_for = trial > 0 && pass.trial == trial && !pass.practice;
+    first = is_asked_for ? pass.first_sample : first;
   }
   const record::Sample start = reader.samples(0, 1).front();
   return first < start.sequence + reader.sample_count()

@@ -19,9 +19,9 @@ struct TouchOptions {
 /// @throws std::invalid_argument naming the option that breaks its bound.
 void check(const TouchOptions& options);
 
-/// The fastest change of a force without the hand [N/s]: of a body that moves by itself, as a ball
-/// of the usual spring at 0.1 m/s, and of one at rest, whose contact is lost or found at another
-/// place.
+/// The fastest change of a force that the hand does not make [N/s]. A body that moves by itself at
+/// 0.1 m/s bends the usual spring as fast as the first. The second is of a body at rest, whose
+/// contact may be lost, or found at another place.
 inline constexpr double kFastestOfMoving = 500.0;
 inline constexpr double kFastestAtRest = 100.0;
 
