@@ -20,7 +20,12 @@ constexpr double kLastingNearLimit = 0.065;  // [s]
 constexpr double kSwing = 2.0;       // peak to peak [N]
 constexpr double kGap = 1.0 / 30.0;  // between the turns of 15 Hz [s]
 constexpr double kLasting = 0.2;     // [s]
-constexpr double kDying = 0.96;      // of the swing before: what dies away, as after a knock
+
+/// What dies away does so by itself, as after a knock.
+bool stays(const SwingCounter::Alternation& train) noexcept {
+  constexpr double kDying = 0.96;  // of the swing before
+  return train.turned && train.swing >= kDying * train.swing_before;
+}
 
 }  // namespace
 
@@ -35,11 +40,9 @@ Fault ForceWatch::look(const Eigen::Vector3d& force, const Eigen::Vector3d& stim
   saturated_for_ = force.norm() >= kAtTheLimit * limit_ ? saturated_for_ + dt : 0.0;
   const SwingCounter::Alternation near = at_limit_.look(force, stimulus, dt);
   const SwingCounter::Alternation any = swings_.look(force, stimulus, dt);
-  const bool oscillates =
-      (near.turned && near.turns >= kTurnsNearLimit && near.lasted >= kLastingNearLimit &&
-       near.largest > kNear * limit_) ||
-      (any.turned && any.lasted >= kLasting && any.swing >= kDying * any.swing_before);
-  if (oscillates) {
+  const bool near_limit = near.turns >= kTurnsNearLimit && near.lasted >= kLastingNearLimit &&
+                          near.largest > kNear * limit_;
+  if ((near_limit && stays(near)) || (any.lasted >= kLasting && stays(any))) {
     return Fault::kOscillation;
   }
   return saturated_for_ > longest_ ? Fault::kSaturation : Fault::kNone;

@@ -12,8 +12,8 @@ namespace haptrial::device {
 /// - Oscillation at the limit: along one axis the force turned back at least five times, each time
 ///   by more than half of the limit, from or to more than 0.7 of it, and at most 80 ms after the
 ///   time before, over 65 ms or more. So 6 Hz and more are found, from 22 Hz on within 120 ms.
-/// - Any oscillation: along one axis the force swings by 2 N or more at 15 Hz or more for 0.2 s, it
-///   does not die away, and no stimulus accounts for it (SwingCounter).
+/// - Any oscillation: along one axis the force swings by 2 N or more at 15 Hz or more for 0.2 s,
+///   and no stimulus accounts for it (SwingCounter). Neither counts while it dies away.
 /// - Saturation: for longer than `longest` the force did not leave the limit.
 ///
 /// Servo thread: no allocation, lock, I/O or throw.

@@ -233,7 +233,7 @@ void BallTouch::find_places(const Vector3d& centre) noexcept {
 }
 
 /// @returns whether the centre is inside of the body, by the mean of the normals of the faces that
-/// are nearest.
+/// are nearest, or on its surface.
 bool BallTouch::take_nearest(const Vector3d& centre) noexcept {
   const double same = 1e-6 * body_->mesh().spacing;
   Place best;
@@ -259,10 +259,10 @@ bool BallTouch::take_nearest(const Vector3d& centre) noexcept {
     }
   }
   const Vector3d away = centre - best.at;
-  const bool inside = away.dot(outward) < 0.0;
-  best.normal = best.distance < kOnSurface * body_->mesh().spacing
-                    ? Vector3d(-outward.stableNormalized())
-                    : Vector3d((inside ? away : Vector3d(-away)) / best.distance);
+  const bool on_surface = best.distance < kOnSurface * body_->mesh().spacing;
+  const bool inside = on_surface || away.dot(outward) < 0.0;
+  best.normal = on_surface ? Vector3d(-outward.stableNormalized())
+                           : Vector3d((inside ? away : Vector3d(-away)) / best.distance);
   places_[0] = best;
   clear_ = inside ? 0.0 : best.distance;
   clear_at_ = centre;

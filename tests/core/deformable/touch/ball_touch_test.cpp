@@ -296,6 +296,19 @@ TEST(BallTouchTest, AClosedPathGivesNoEnergy) {
   }
 }
 
+/// A pass may begin with the hand there.
+TEST(BallTouchTest, ABallWhoseCentreIsOnTheSurfaceIsFeltFromTheFirstTick) {
+  const auto first_force = [](double depth) {
+    BallTouch touch(soft_body(), ball(0.006, 5000.0));
+    const Vector3d tool(0.0, kTop - depth, 0.0);
+    touch.start(tool);
+    return touch.tick(tool, kTick).force;
+  };
+  const Vector3d inside = first_force(1e-5);
+  EXPECT_GT(inside.y(), 1.0);
+  EXPECT_LT((first_force(0.0) - inside).norm(), 0.05 * inside.norm());
+}
+
 /// A ball deep in a block of few cells, whose places are found anew now and then.
 TEST(BallTouchTest, AStrokeMakesNoBlows) {
   constexpr double kSpring = 540.0;
