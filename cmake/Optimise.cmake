@@ -3,7 +3,7 @@
 function(haptrial_level folder out)
   set(level 2)
   if(folder MATCHES "^tests")
-    set(level 0)
+    set(level 1)
   elseif(folder MATCHES "^core/(bone/(data|drill|dust|model|simulator|surface)|contact|control|deformable|device|geometry|scene|subject)" OR
          folder MATCHES "^analysis/(alignment|psychometric)")
     set(level 3)
