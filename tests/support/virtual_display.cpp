@@ -37,15 +37,17 @@ class X {
       throw std::runtime_error("the display does not answer");
     }
     // A session may close its window before the last event reaches it; Xlib would end the test.
-    get<decltype(&XSetErrorHandler)>("XSetErrorHandler")([](Display*, XErrorEvent* error) {
-      if (error->error_code != BadWindow) {
-        std::abort();
-      }
-      return 0;
-    });
+    before_ =
+        get<decltype(&XSetErrorHandler)>("XSetErrorHandler")([](Display*, XErrorEvent* error) {
+          if (error->error_code != BadWindow) {
+            std::abort();
+          }
+          return 0;
+        });
   }
   ~X() {
     get<decltype(&XCloseDisplay)>("XCloseDisplay")(display_);  // sends what is not sent yet
+    get<decltype(&XSetErrorHandler)>("XSetErrorHandler")(before_);
     dlclose(library_);
   }
   X(const X&) = delete;
@@ -90,6 +92,7 @@ class X {
  private:
   void* library_;
   Display* display_{nullptr};
+  XErrorHandler before_{nullptr};  // that of a window in this process
 };
 
 Time next_time() {
@@ -256,6 +259,11 @@ void VirtualDisplay::ask_to_close(const std::string& title) const {
   event.xclient.format = 32;
   event.xclient.data.l[0] = static_cast<long>(x.atom("WM_DELETE_WINDOW"));
   x.send(event.xclient.window, NoEventMask, event);
+}
+
+void VirtualDisplay::destroy_window(const std::string& title) const {
+  const X x;
+  x.get<decltype(&XDestroyWindow)>("XDestroyWindow")(x.display(), x.find(title));
 }
 
 void VirtualDisplay::move_pointer(int px, int py) const {

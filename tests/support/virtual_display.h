@@ -43,8 +43,9 @@ class VirtualDisplay {
   /// @param button  1 left, 2 middle, 3 right, 4 and 5 the wheel up and down
   void press_button(const std::string& title, unsigned button) const;  // and hold it
   void release_button(const std::string& title, unsigned button) const;
-  void ask_to_close(const std::string& title) const;  // as a window manager does
-  void move_pointer(int x, int y) const;              // [px]
+  void ask_to_close(const std::string& title) const;    // as a window manager does
+  void destroy_window(const std::string& title) const;  // as another program may
+  void move_pointer(int x, int y) const;                // [px]
 
  private:
   TemporaryFolder folder_;

@@ -35,16 +35,23 @@ Function loaded(const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_DEFAULT, name));
 }
 
-/// Xlib calls exit() when its server is gone. Here the loss is noted instead, and what is drawn
-/// goes nowhere. The functions are looked up, since GLFW for Wayland comes without Xlib.
+/// Xlib calls exit() when its server is gone, or when another program has destroyed the window. Here
+/// the loss is noted instead, and what is drawn goes nowhere. The functions are looked up, since
+/// GLFW for Wayland comes without Xlib.
 void outlive_display() {
   using Lost = int (*)(void* display);
+  using Refused = int (*)(void* display, void* error);
   using Exit = void (*)(void* display, void* with);
   const auto display = loaded<void* (*)()>("glfwGetX11Display");
   const auto on_loss = loaded<Lost (*)(Lost)>("XSetIOErrorHandler");
   const auto on_exit = loaded<void (*)(void*, Exit, void*)>("XSetIOErrorExitHandler");
+  const auto on_refusal = loaded<Refused (*)(Refused)>("XSetErrorHandler");
   display_lost = false;
-  if (display != nullptr && on_loss != nullptr && on_exit != nullptr) {
+  if (display != nullptr && on_loss != nullptr && on_exit != nullptr && on_refusal != nullptr) {
+    on_refusal([](void*, void*) {
+      display_lost = true;
+      return 0;
+    });
     on_loss([](void*) {
       display_lost = true;
       return 0;

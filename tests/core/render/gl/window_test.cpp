@@ -238,16 +238,25 @@ TEST(WindowWithoutDisplayTest, SaysSoInASentence) {
   }
 }
 
+std::string ends_with(Window& window) {
+  return test::message_of<RunError>([&] {
+    for (;;) {
+      window.swap();
+      window.poll();
+    }
+  });
+}
+
 TEST_F(WindowTest, ADisplayThatEndsIsAnErrorAndNotTheEndOfTheProgram) {
   Window window(small());
   display_->end();
-  EXPECT_THAT(test::message_of<RunError>([&] {
-                for (;;) {
-                  window.swap();
-                  window.poll();
-                }
-              }),
-              HasSubstr("the display is gone"));
+  EXPECT_THAT(ends_with(window), HasSubstr("the display is gone"));
+}
+
+TEST_F(WindowTest, AWindowThatAnotherProgramDestroysIsAnErrorLikewise) {
+  Window window(small());
+  display_->destroy_window(small().title);
+  EXPECT_THAT(ends_with(window), HasSubstr("the display is gone"));
 }
 
 }  // namespace
