@@ -35,9 +35,9 @@ Function loaded(const char* name) {
   return reinterpret_cast<Function>(::dlsym(RTLD_DEFAULT, name));
 }
 
-/// Xlib calls exit() when its server is gone, or when another program has destroyed the window. Here
-/// the loss is noted instead, and what is drawn goes nowhere. The functions are looked up, since
-/// GLFW for Wayland comes without Xlib.
+/// Xlib calls exit() when its server is gone, or when another program has destroyed the window.
+/// Here the loss is noted instead, and what is drawn goes nowhere. The functions are looked up,
+/// since GLFW for Wayland comes without Xlib.
 void outlive_display() {
   using Lost = int (*)(void* display);
   using Refused = int (*)(void* display, void* error);
