@@ -216,9 +216,11 @@ Table with_given(Table root, const fs::path& file, const std::vector<GivenKey>& 
              : Table::parse(with_values(root.source(), file.string(), given), file.string());
 }
 
+std::string table_of(const std::string& key) { return key.substr(0, key.find('.')); }
+
 /// Whether a key belongs to the lab file: to a table of machines that the definition itself lacks.
 bool is_of_lab(const Table& definition, const std::string& key) {
-  const std::string table = key.substr(0, key.find('.'));
+  const std::string table = table_of(key);
   const std::vector<std::string>& machines = machine_tables();
   return definition.has("lab") && !definition.has(table) &&
          std::find(machines.begin(), machines.end(), table) != machines.end();
@@ -267,6 +269,15 @@ Table load_with_lab(const fs::path& definition, std::span<const GivenKey> given)
   parts.back().text += fmt::format("\n# From {}:\n", certificate->filename().string());
   parts.push_back({certificate_table(read_certificate(*certificate)), certificate->string()});
   return Table::parse(parts);
+}
+
+fs::path lab_with(const fs::path& definition, const std::string& key) {
+  Table root = Table::load(definition);
+  if (!is_of_lab(root, key)) {
+    return {};
+  }
+  const fs::path file = file_of(root, definition);
+  return Table::load(file).has(table_of(key)) ? file : fs::path{};
 }
 
 std::string lab_of(std::string_view definition) {

@@ -30,6 +30,10 @@ const std::vector<std::string>& machine_tables();
 /// none.
 Table load_with_lab(const std::filesystem::path& definition, std::span<const GivenKey> given = {});
 
+/// The lab file that holds the table of this key; empty if none does, so that the key belongs to
+/// the definition itself. @throws InputError as Table::load() does for either file
+std::filesystem::path lab_with(const std::filesystem::path& definition, const std::string& key);
+
 /// The lab file that a definition's text names; empty if none, or if the text is not TOML.
 std::string lab_of(std::string_view definition);
 

@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <sstream>
 #include <string>
@@ -149,6 +150,20 @@ TEST_F(CommandTest, SetSaysThatADefinitionIsNotValidAnyMore) {
                                          HasSubstr("is written, and is not valid any more")));
   const CommandResult mended = run_command("haptrial set " + study + " procedure.stepp --remove");
   EXPECT_EQ(mended.errors, "");
+}
+
+TEST_F(CommandTest, SetLeavesToALabFileWhatStandsThere) {
+  const std::string study = (folder_ / "study.toml").string();
+  const std::string lab = (folder_ / "lab.toml").string();
+  fs::copy_file(HAPTRIAL_SOURCE_DIR "/experiments/force_discrimination.toml", study);
+  std::ofstream(study, std::ios::app) << "\n[lab]\nuse = \"lab.toml\"\n";
+  std::ofstream(lab) << "[screen]\nmonitor = 0\n";
+  const CommandResult refused = run_command("haptrial set " + study + " screen.monitor 1");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("change it there: haptrial set " + lab));
+  EXPECT_EQ(run_command("haptrial set " + lab + " screen.monitor 1").errors, "");
+  EXPECT_EQ(run_command("haptrial set " + study + " pedal.port '\"/dev/ttyUSB0\"'").status, 0)
+      << "a table that the lab file lacks may stand in the definition";
 }
 
 TEST_F(CommandTest, BashCompletesSubcommandsAndOptions) {

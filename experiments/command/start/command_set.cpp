@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "core/base/whole_file.h"
 #include "experiments/command/subcommand.h"
 #include "experiments/studies/experiment.h"
+#include "protocols/definition/lab_file.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -50,6 +52,12 @@ std::string edited(const SetOptions& o, const std::string& text) {
   }
   if ((o.given.value.empty() ? 0 : 1) + (o.remove ? 1 : 0) + (o.add ? 1 : 0) != 1) {
     throw InputError(fmt::format("{}: give a value, --remove or --add", o.given.key));
+  }
+  if (const std::filesystem::path lab = protocols::lab_with(o.file, o.given.key); !lab.empty()) {
+    throw InputError(
+        fmt::format("{}: the table of {} stands in its lab file; change it there: "
+                    "haptrial set {} ...",
+                    o.file, o.given.key, lab.string()));
   }
   if (o.remove) {
     return without_key(text, o.file, o.given.key);
