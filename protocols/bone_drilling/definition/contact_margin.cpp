@@ -109,7 +109,7 @@ std::optional<ContactMargin> contact_margin(const BoneDefinition& d) {
     if (burr == nullptr) {
       continue;
     }
-    const double stiffness = flat_bone_stiffness(*burr, d.drilling.force_limit);
+    const double stiffness = flat_bone_stiffness(*burr, d.drilling.force_limit) / d.drilling.scale;
     if (!worst || stiffness > worst->stiffness) {
       worst = {tool.name, d.drilling.force_limit, stiffness, 0.0};
     }
@@ -126,8 +126,8 @@ std::optional<ContactMargin> contact_margin(const BoneDefinition& d) {
 
 std::string describe(const ContactMargin& m) {
   return fmt::format(
-      "contact: flat bone under the burr {} is {:.1f} N/mm stiff at {:g} N; without friction the "
-      "loop carries {:.1f} N/mm with the definition's hand",
+      "contact: flat bone under the burr {} is {:.1f} N/mm stiff to the hand at {:g} N; without "
+      "friction the loop carries {:.1f} N/mm with the definition's hand",
       m.tool, 1e-3 * m.stiffness, m.force, 1e-3 * m.stable);
 }
 

@@ -14,7 +14,7 @@ struct BoneDefinition;
 struct ContactMargin {
   std::string tool;
   double force{0.0};      // the limit of the force, at which bone is stiffest [N]
-  double stiffness{0.0};  // of flat bone there [N/m]
+  double stiffness{0.0};  // of flat bone there, for the hand, which drilling.scale moves [N/m]
   double stable{0.0};     // up to which the sampled loop is stable [N/m]
 };
 

@@ -237,6 +237,8 @@ TEST(BoneWarningsTest, ContactVibrationAndDeviceEachGetASentence) {
   d.hand.coulomb_friction = 0.0;
   EXPECT_THAT(d.warnings(), ElementsAre(AllOf(HasSubstr("hand.coulomb_friction is 0"),
                                               HasSubstr("10.0 N/mm at 1000 Hz"))));
+  d.drilling.scale = 3.0;
+  EXPECT_THAT(d.warnings(), IsEmpty()) << "bone is a third as stiff to the hand";
   d = dynamic_cast<const protocols::BoneDefinition&>(*shipped.definition);
   d.rate = 500.0;
   EXPECT_THAT(d.warnings(), ElementsAre(HasSubstr("lines of up to 341 Hz; those at 250 Hz")));
