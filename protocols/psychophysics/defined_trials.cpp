@@ -68,7 +68,7 @@ DefinedTrials::DefinedTrials(const StudiedDefinition& definition, const SessionP
       names_(read_names(root_, definition)),
       scripts_(definition, place_),
       sequence_(std::in_place, definition, identity_of(definition, place)),
-      object_files_(object_files(definition.objects)),
+      object_files_(object_files(definition.objects, definition.cues.cues)),
       arms_(arm_rows(definition.hands)),
       touched_bodies_(definition.objects) {
   const auto open = [this](bool has, auto& log) {
@@ -135,7 +135,7 @@ std::vector<record::Rows> DefinedTrials::first_rows() const {
 
 /// A virtual participant goes on as if the session had not been interrupted.
 void DefinedTrials::check_resumed(const record::SessionReader& file) const {
-  check_object_files(file, d_.objects, "resume");
+  check_object_files(file, object_files_, "resume");
   if (rig_ == nullptr) {
     return;
   }

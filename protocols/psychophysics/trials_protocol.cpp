@@ -79,7 +79,8 @@ class TrialsProtocol final : public Protocol {
   }
   void check_replayed(const Definition& definition,
                       const record::SessionReader& file) const override {
-    check_object_files(file, dynamic_cast<const TrialsDefinition&>(definition).objects, "replay");
+    const auto& d = dynamic_cast<const TrialsDefinition&>(definition);
+    check_object_files(file, object_files(d.objects, d.cues.cues), "replay");
   }
   void replay(const ReplayRequest& request) const override { replay_trials(*this, request); }
 };

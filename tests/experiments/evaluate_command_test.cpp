@@ -16,6 +16,7 @@
 #include "core/geometry/files/mesh_io.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/object_rows.h"
+#include "core/sound/wav.h"
 #include "protocols/psychophysics/objects/object_files.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
@@ -332,13 +333,13 @@ TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
   const auto analysed = run("haptrial analyze study");
   EXPECT_EQ(analysed.status, 0) << analysed.errors;
   const std::string sentence = fmt::format(
-      "objects.ball was not the same mesh in all sessions, which are analysed together "
+      "objects.ball was not the same file in all sessions, which are analysed together "
       "all the same: 'ball.obj' with the checksum {:016x} in S01.h5; 'ball.obj' with "
       "the checksum {} in S02.h5.",
       rows[0].checksum, other);
   EXPECT_THAT(analysed.output, HasSubstr(sentence));
-  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("not the same mesh"));
-  EXPECT_THAT(run("haptrial analyze other").output, Not(HasSubstr("not the same mesh")));
+  EXPECT_THAT(test::read_text(folder_ / "study/report.md"), HasSubstr("not the same file"));
+  EXPECT_THAT(run("haptrial analyze other").output, Not(HasSubstr("not the same file")));
 
   // The same for a session that is gone on with.
   std::vector<protocols::TrialObject> objects(1);
@@ -346,11 +347,39 @@ TEST_F(EvaluateCommandTest, ARecordingIsNotReplayedWithAnotherMesh) {
   objects[0].file = "ball.obj";
   protocols::load_objects(objects, folder_.path());
   const record::SessionReader recorded(folder_ / "study/S01.h5");
-  EXPECT_THAT(test::message_of([&] { check_object_files(recorded, objects, "resume"); }),
+  const auto files = [&] { return protocols::object_files(objects, {}); };
+  EXPECT_THAT(test::message_of([&] { protocols::check_object_files(recorded, files(), "resume"); }),
               HasSubstr("; resume it with the same file"));
   test::write_text(folder_ / "ball.obj", bytes);
   protocols::load_objects(objects, folder_.path());
-  EXPECT_NO_THROW(check_object_files(recorded, objects, "resume"));
+  EXPECT_NO_THROW(protocols::check_object_files(recorded, files(), "resume"));
+}
+
+/// A sound is a stimulus as a mesh is.
+TEST_F(EvaluateCommandTest, SessionsThatHeardOtherRecordingsAreToldApart) {
+  const auto record_beep = [this](float level) {
+    sound::WavWriter writer(folder_ / "beep.wav", 48'000, true);
+    writer.write(std::vector<float>(480, level));
+    writer.finish();
+    return fmt::format("{:016x}", fnv1a(test::read_text(folder_ / "beep.wav")));
+  };
+  std::string study = kBallStudy;
+  study.replace(study.find("mesh = \"ball.obj\""), 17,
+                "shape = \"box\"\nsize = [0.02, 0.02, 0.02]");
+  study += "[sounds.beep]\ntype = \"file\"\nfile = \"beep.wav\"\n";
+  test::write_text(folder_ / "beep.toml", study);
+  const std::string first = record_beep(0.1F);
+  ASSERT_EQ(run("haptrial dry-run beep.toml --out study").status, 0);
+  const std::string second = record_beep(0.2F);
+  const auto refused =
+      run("haptrial run beep.toml --subject S01 --device replay:study/S01.h5 --out again");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("was recorded with another file of sounds.beep"));
+  ASSERT_EQ(run("haptrial dry-run beep.toml --out other").status, 0);
+  fs::copy_file(folder_ / "other/S01.h5", folder_ / "study/S02.h5");
+  EXPECT_THAT(run("haptrial analyze study").output,
+              testing::AllOf(HasSubstr("sounds.beep was not the same file in all sessions"),
+                             HasSubstr(first + " in S01.h5"), HasSubstr(second + " in S02.h5")));
 }
 
 TEST_F(EvaluateCommandTest, WhatIsDoubtfulIsSaid) {

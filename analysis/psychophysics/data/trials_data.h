@@ -46,11 +46,11 @@ struct StudySession {
   std::string clock;  // "real" or "simulated"
   bool simulated{false};
   bool pilot{false};
-  int session{1};                               // of the participant, from 1
-  std::vector<record::ObjectFileRow> meshes{};  // files of the objects, as they were then
-  double rate{1000.0};                          // ticks a second [Hz]
-  std::size_t planned{0};                       // trials, at most; 0: the file does not say it
-  std::string ended_early{};                    // why trials are left; empty: none are
+  int session{1};                              // of the participant, from 1
+  std::vector<record::ObjectFileRow> files{};  // of objects and sounds, as they were then
+  double rate{1000.0};                         // ticks a second [Hz]
+  std::size_t planned{0};                      // trials, at most; 0: the file does not say it
+  std::string ended_early{};                   // why trials are left; empty: none are
   std::string name{};  // of the session in the definition; empty: it has none
 };
 

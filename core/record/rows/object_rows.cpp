@@ -102,13 +102,16 @@ const Table<ObjectFileRow>& table_of<ObjectFileRow>() {
   using T = Table<R>;
   static const T table(
       {"object_files",
-       "files of objects as they were when the session began: meshes, and constants of springs",
+       "files of objects and sounds as they were when the session began: meshes, constants of "
+       "springs, recordings",
        4,
        RowsOf::kSession,
        {"object"}},
-      {T::column("object", &R::object, "1", "of [objects] in the order of their names, from 0"),
+      {T::column("object", &R::object, "1",
+                 "of [objects] in the order of their names, from 0; -1 of a sound"),
        T::text("name", &R::name, kObjectNameBytes,
-               "of the object; with .calibrated behind it for its constants"),
+               "of the object, with .calibrated behind it for its constants; of a sound with "
+               "sounds. before it"),
        T::text("file", &R::file, kObjectFileBytes, "as the definition names it"),
        T::column("bytes", &R::bytes, "byte", "size of the file"),
        T::column("checksum", &R::checksum, "1", "64-bit FNV-1a hash of the file's bytes")});

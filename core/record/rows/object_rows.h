@@ -66,13 +66,16 @@ struct LateWindowRow {
 template <>
 const Table<LateWindowRow>& table_of<LateWindowRow>();
 
-/// The mesh file of an object as it was when the session began, a row of /object_files.
+/// A file of an object or a sound as it was when the session began, a row of /object_files.
 struct ObjectFileRow {
-  std::int32_t object{0};     // of [objects] in the order of names, from 0
-  std::string name;           // of the object
+  std::int32_t object{0};     // of [objects] in the order of names, from 0; -1: of a sound
+  std::string name;           // of the object; of a sound "sounds.beep"
   std::string file;           // as the definition names it
   std::uint64_t bytes{0};     // its size
   std::uint64_t checksum{0};  // FNV-1a of its bytes
+
+  /// As definitions call it, "objects.ball".
+  std::string key() const { return object < 0 ? name : "objects." + name; }
 };
 
 template <>

@@ -9,7 +9,7 @@
 #include <set>
 
 #include "analysis/exchange/own_findings.h"
-#include "analysis/psychophysics/data/felt_meshes.h"
+#include "analysis/psychophysics/data/presented_files.h"
 #include "analysis/psychophysics/data/read_trials.h"
 #include "analysis/psychophysics/report/trials_words.h"
 #include "analysis/psychophysics/report/write_trials.h"
@@ -306,7 +306,7 @@ trials::TrialsResult analyzed(const AnalysisRequest& request) {
   trials::TrialsData data = trials::read_trials(request.files.files, group_of, request.threads);
   add_missing(request, definition, data, remarks);
   add_other_levels(data, plan, remarks);
-  std::ranges::move(trials::unlike_meshes(data.sessions), std::back_inserter(remarks));
+  std::ranges::move(trials::unlike_files(data.sessions), std::back_inserter(remarks));
   std::vector<trials::PageScore> scores =
       trials::page_scores(request.files.files, definition.pages, group_of);
   trials::add_covariate(scores, plan.plan.covariate);

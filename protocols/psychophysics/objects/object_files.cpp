@@ -6,13 +6,16 @@
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/base/file_text.h"
+#include "core/base/fnv.h"
 #include "core/contact/renderer_kinds.h"
 #include "core/record/read/session_reader.h"
 #include "core/scene/needed_damping.h"
 
 namespace haptrial::protocols {
 
-std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& objects) {
+std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& objects,
+                                                const std::vector<sound::Cue>& sounds) {
   std::vector<record::ObjectFileRow> rows;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const TrialObject& object = objects[i];
@@ -26,19 +29,25 @@ std::vector<record::ObjectFileRow> object_files(const std::vector<TrialObject>& 
                       object.constants_checksum});
     }
   }
+  for (const sound::Cue& sound : sounds) {
+    if (!sound.file.empty()) {
+      const std::string bytes = file_text(sound.file);
+      rows.push_back(
+          {-1, "sounds." + sound.name, sound.file.filename().string(), bytes.size(), fnv1a(bytes)});
+    }
+  }
   return rows;
 }
 
 void check_object_files(const record::SessionReader& recorded,
-                        const std::vector<TrialObject>& objects, std::string_view to) {
-  const std::vector<record::ObjectFileRow> now = object_files(objects);
+                        const std::vector<record::ObjectFileRow>& now, std::string_view to) {
   for (const record::ObjectFileRow& before : recorded.rows<record::ObjectFileRow>()) {
     const auto same = std::ranges::find(now, before.name, &record::ObjectFileRow::name);
     if (same != now.end() && (same->bytes != before.bytes || same->checksum != before.checksum)) {
       throw InputError(fmt::format(
-          "{}: was recorded with another file of objects.{}: '{}' has the checksum {:016x}, the "
+          "{}: was recorded with another file of {}: '{}' has the checksum {:016x}, the "
           "recording {:016x}; {} it with the same file",
-          recorded.path().string(), before.name, same->file, same->checksum, before.checksum, to));
+          recorded.path().string(), before.key(), same->file, same->checksum, before.checksum, to));
     }
   }
 }
