@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <iostream>
 #include <iterator>
 #include <numeric>
@@ -62,6 +63,31 @@ bool is_like_a_number(std::string_view text, char separator) {
     return true;
   }
   return separator != ',' && number(text, ',');
+}
+
+bool is_digits(std::string_view text) {
+  return !text.empty() &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// How a number would be written with a separator of thousands.
+enum class Thousands : std::uint8_t { kSeparated, kHundreds, kBelow, kOther };
+
+Thousands thousands_of(std::string_view text) {
+  if (!text.empty() && (text.front() == '-' || text.front() == '+')) {
+    text.remove_prefix(1);
+  }
+  const std::size_t at = text.find_first_of(".,");
+  const std::string_view whole = text.substr(0, at);
+  if (!is_digits(whole) || whole.size() > 3) {
+    return Thousands::kOther;
+  }
+  if (at == std::string_view::npos) {
+    return whole.size() == 3 && whole.front() != '0' ? Thousands::kHundreds : Thousands::kBelow;
+  }
+  const std::string_view behind = text.substr(at + 1);
+  return whole.front() != '0' && behind.size() == 3 && is_digits(behind) ? Thousands::kSeparated
+                                                                         : Thousands::kOther;
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -331,6 +357,7 @@ std::vector<double> CsvTable::numbers(std::size_t column,
       }
     }
   }
+  refuse_thousands(column, rows);
   std::vector<double> values;
   values.reserve(rows.size());
   for (const std::size_t row : rows) {
@@ -341,6 +368,30 @@ std::vector<double> CsvTable::numbers(std::size_t column,
     values.push_back(*value);
   }
   return values;
+}
+
+void CsvTable::refuse_thousands(std::size_t column, const std::vector<std::size_t>& rows) const {
+  std::optional<std::size_t> separated;
+  bool hundreds = false;
+  for (const std::size_t row : rows) {
+    switch (thousands_of(text(row, column))) {
+      case Thousands::kSeparated:
+        separated = separated.value_or(row);
+        break;
+      case Thousands::kHundreds:
+        hundreds = true;
+        break;
+      case Thousands::kBelow:
+        break;
+      case Thousands::kOther:
+        return;
+    }
+  }
+  if (separated && hundreds) {
+    refuse(*separated, column,
+           "a number without a separator of thousands, which its mark is beside whole numbers of "
+           "three digits; a fraction is written with all its digits, 994.000");
+  }
 }
 
 void CsvTable::refuse(std::size_t row, std::size_t column, std::string_view allowed) const {

@@ -38,10 +38,15 @@ class CsvTable {
   std::string_view text(std::size_t row, std::size_t column) const;
   /// A whole column of finite numbers. The decimal mark is a point, or throughout a column a comma
   /// where commas do not separate.
-  /// @throws InputError for anything else: empty, NaN, "1.5 N", a number too large.
+  /// @throws InputError for anything else: empty, NaN, "1.5 N", a number too large; and as
+  ///   refuse_thousands() does.
   std::vector<double> numbers(std::size_t column) const;
   /// The same for some of the rows, which alone decide about the decimal mark.
   std::vector<double> numbers(std::size_t column, const std::vector<std::size_t>& rows) const;
+
+  /// @throws InputError where the marks of a column separate thousands: "1.304" beside "994", where
+  /// every number with a mark has three digits behind it and no other reaches 1,000.
+  void refuse_thousands(std::size_t column, const std::vector<std::size_t>& rows) const;
 
   /// @throws InputError  FILE:LINE: COLUMN is 'FOUND'; allowed: ALLOWED
   [[noreturn]] void refuse(std::size_t row, std::size_t column, std::string_view allowed) const;

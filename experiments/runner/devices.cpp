@@ -14,6 +14,7 @@
 #include "core/device/replay.h"
 #include "core/device/vendor_devices.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -96,15 +97,13 @@ std::unique_ptr<device::Device> replayed(const std::string& file, double rate) {
                                  file, reader.info().rate, rate));
   }
   std::vector<PointState> hand;
-  std::uint64_t first = 0;
   for (const record::Sample& sample : reader.samples(0, reader.sample_count())) {
-    first = hand.empty() ? sample.sequence : first;
     hand.push_back({sample.position, sample.velocity});
   }
   std::vector<std::size_t> starts;
   for (const record::PassRow& pass : reader.passes()) {
     if (pass.status == record::PassStatus::kCompleted) {
-      starts.push_back(static_cast<std::size_t>(pass.first_sample - first));
+      starts.push_back(static_cast<std::size_t>(record::span_of_pass(reader, pass).first));
     }
   }
   device::DeviceInfo info;

@@ -63,6 +63,7 @@ class Session {
   void note_setting();
   bool has_break_after(const PlannedTrial& trial) const;
   bool is_hopeless() const;
+  bool is_anything_left_after(const Outcome& outcome);
   std::string why_given_up() const;
   protocols::SessionPlace place();
 
@@ -376,7 +377,7 @@ void Session::run_trials() {
     const bool stopped = controller_.requests().abort;
     const bool rests = has_break_after(*trial) && !stopped;
     if (stopped) {
-      left_ = left_ || next_.after(&outcome).has_value();
+      left_ = left_ || is_anything_left_after(outcome);
       break;
     }
     trial = next_.after(&outcome);
@@ -438,6 +439,11 @@ std::string Session::why_given_up() const {
 bool Session::has_break_after(const PlannedTrial& trial) const {
   const int after = d_.design.break_after;
   return after > 0 && !trial.practice && trial.trial % after == 0;
+}
+
+/// Trials, or pages after the last block; those at the end of the session refuse by themselves.
+bool Session::is_anything_left_after(const Outcome& outcome) {
+  return next_.after(&outcome) || pages_.has_after_block(outcome.trial.block_name);
 }
 
 void Session::finish() {

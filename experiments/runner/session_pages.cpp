@@ -102,6 +102,10 @@ bool SessionPages::before() { return show(d_.pages.before, PageTime::kBefore, 0)
 
 bool SessionPages::after() { return show(d_.pages.after, PageTime::kAfter, 0); }
 
+bool SessionPages::has_after_block(const std::string& name) const {
+  return d_.pages.after_block.contains(name);
+}
+
 bool SessionPages::after_block(int block, const std::string& name, bool missed) {
   const auto found = d_.pages.after_block.find(name);
   return found == d_.pages.after_block.end() ||

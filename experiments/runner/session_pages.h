@@ -42,6 +42,7 @@ class SessionPages {
   /// definition's
   /// @param missed  of an earlier run: only what it left unanswered is asked
   bool after_block(int block, const std::string& name, bool missed = false);
+  bool has_after_block(const std::string& name) const;
   bool after();
   /// Whether the participant did not consent, in this run or an earlier one.
   bool declined() const { return declined_; }

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/bone/record/recorded_bone.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/table/schema.h"
 #include "protocols/bone_drilling/display/bone_display.h"
 #include "protocols/bone_drilling/drilling_pass.h"
@@ -303,12 +304,12 @@ void BoneReplay::run_pass(std::int32_t row, const record::PassRow& pass,
 
 void BoneReplay::run_own(const record::PassRow& pass, Work& work) const {
   const protocols::DrillingInput input(definition_.drilling);
-  const std::uint64_t offset = reader_.samples(0, 1).front().sequence;
-  const std::uint64_t end = pass.last_sample - offset + 1;
+  const record::RowSpan rows = record::span_of_pass(reader_, pass);
+  const std::uint64_t end = rows.first + rows.count;
   const bool two = definition_.drilling.second.has_value();
   Cursor<record::DeviceRow> devices(second_, pass.first_sample);
   bool begun = false;
-  for (std::uint64_t at = pass.first_sample - offset; at < end; at += kPiece) {
+  for (std::uint64_t at = rows.first; at < end; at += kPiece) {
     const std::uint64_t count = std::min(kPiece, end - at);
     const std::vector<record::Sample> samples = reader_.samples(at, count);
     const std::vector<record::ToolRow> tool = reader_.rows<record::ToolRow>(at, count);

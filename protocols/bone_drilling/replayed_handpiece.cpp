@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/record/read/tick_rows.h"
 #include "core/record/table/schema.h"
 
 namespace haptrial::protocols {
@@ -58,11 +59,7 @@ std::string difference(const record::HandpieceRow& recorded, const bone::Simulat
 
 ReplayedHandpiece::ReplayedHandpiece(const record::SessionReader& reader,
                                      const DrillingInput& input, const bone::Simulator& simulator)
-    : reader_(reader),
-      input_(input),
-      simulator_(simulator),
-      touch_(simulator),
-      offset_(reader.samples(0, 1).front().sequence) {}
+    : reader_(reader), input_(input), simulator_(simulator), touch_(simulator) {}
 
 void ReplayedHandpiece::read(std::uint64_t at) {
   constexpr std::uint64_t kPiece = 65536;  // rows read at once
@@ -70,16 +67,21 @@ void ReplayedHandpiece::read(std::uint64_t at) {
   samples_ = reader_.samples(at, count);
   tool_ = reader_.rows<record::ToolRow>(at, count);
   held_ = reader_.rows<record::HandpieceRow>(at, count);
-  first_ = at;
 }
 
 std::string ReplayedHandpiece::check(std::uint64_t sequence) {
-  const std::uint64_t at = sequence - offset_;
-  if (at < first_ || at >= first_ + samples_.size()) {
-    read(at);
+  const auto is_read = [&] {
+    return !samples_.empty() && samples_.front().sequence <= sequence &&
+           sequence <= samples_.back().sequence;
+  };
+  if (!is_read()) {
+    read(record::row_of_tick(reader_, record::samples_table(), sequence));
   }
-  const auto i = static_cast<std::size_t>(at - first_);
-  if (i >= held_.size() || !tool_[i].active || waited(tool_[i], held_[i])) {
+  const auto i = static_cast<std::size_t>(
+      std::ranges::lower_bound(samples_, sequence, {}, &record::Sample::sequence) -
+      samples_.begin());
+  if (i >= held_.size() || samples_[i].sequence != sequence || !tool_[i].active ||
+      waited(tool_[i], held_[i])) {
     return "";
   }
   const bone::SimulatorInput own = input_.of(reading_of(samples_[i], tool_[i]), 0.0);

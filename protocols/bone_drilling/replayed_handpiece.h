@@ -47,8 +47,6 @@ class ReplayedHandpiece {
   const DrillingInput& input_;
   const bone::Simulator& simulator_;
   bone::BoneTouch touch_;
-  std::uint64_t offset_;    // sequence number of the first row
-  std::uint64_t first_{0};  // of the rows that were read
   std::vector<record::Sample> samples_;
   std::vector<record::ToolRow> tool_;
   std::vector<record::HandpieceRow> held_;

@@ -150,8 +150,7 @@ ForceReplay::Pass ForceReplay::read(const record::SessionReader& reader,
                                     const record::PassRow& row) {
   Pass pass;
   pass.row = row;
-  const std::vector<record::Sample> samples =
-      reader.samples(row.first_sample, row.last_sample - row.first_sample + 1);
+  const std::vector<record::Sample> samples = record::samples_of_pass(reader, row);
   const stimulus::Stimulus stimulus = stimulus_of(reader, row);
   const auto rules =
       protocols::make_pass(row.condition, row.phase, stimulus, definition_.guidance, row.block);

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -60,8 +61,7 @@ std::vector<Eigen::Vector3d> recorded_path(const std::string& from,
   }
   std::vector<Eigen::Vector3d> path;
   Eigen::Vector3d last = Eigen::Vector3d::Zero();
-  for (const record::Sample& s :
-       reader.samples(row->first_sample, row->last_sample - row->first_sample + 1)) {
+  for (const record::Sample& s : record::samples_of_pass(reader, *row)) {
     if (s.stage != record::Stage::kRun) {
       continue;
     }

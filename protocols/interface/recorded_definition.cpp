@@ -9,6 +9,7 @@
 #include "core/record/read/definition_versions.h"
 #include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "protocols/definition/definition.h"
 #include "protocols/definition/languages.h"
 
@@ -27,10 +28,9 @@ std::int64_t begin_of(const record::SessionReader& reader, int trial) {
     const bool is_asked_for = trial > 0 && pass.trial == trial && !pass.practice;
     first = is_asked_for ? pass.first_sample : first;
   }
-  const record::Sample start = reader.samples(0, 1).front();
-  return first < start.sequence + reader.sample_count()
-             ? reader.samples(first - start.sequence, 1).front().time_ns
-             : std::numeric_limits<std::int64_t>::max();
+  const std::uint64_t row = record::row_of_tick(reader, record::samples_table(), first);
+  return row < reader.sample_count() ? reader.samples(row, 1).front().time_ns
+                                     : std::numeric_limits<std::int64_t>::max();
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/questions/question_kind.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/rows/device_rows.h"
 #include "core/record/rows/object_rows.h"
 #include "core/record/rows/trial_rows.h"
@@ -66,8 +67,7 @@ class TrialReplay {
   void run() {
     find_pass();
     const record::PassRow& pass = passes_[row_];
-    const auto samples =
-        reader_.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1);
+    const std::vector<record::Sample> samples = record::samples_of_pass(reader_, pass);
     const int width = definition_->display.width;
     const int height = definition_->display.height;
     render::OffscreenContext context(width, height);

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::protocols {
 namespace {
@@ -23,8 +24,7 @@ bool read_number(std::string_view text, Number& number) {
 std::vector<tutoring::Partner> run_of(const record::SessionReader& reader,
                                       const record::PassRow& pass) {
   std::vector<tutoring::Partner> ticks;
-  for (const record::Sample& sample :
-       reader.samples(pass.first_sample, pass.last_sample - pass.first_sample + 1)) {
+  for (const record::Sample& sample : record::samples_of_pass(reader, pass)) {
     if (sample.stage == record::Stage::kRun) {
       ticks.push_back({{sample.position, sample.velocity}, sample.force});
     }

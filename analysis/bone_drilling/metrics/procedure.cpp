@@ -12,6 +12,7 @@
 #include "core/bone/record/recorded_bone.h"
 #include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/table/schema.h"
 #include "core/subject/drilling/work_row.h"
 
@@ -139,8 +140,11 @@ class Loader {
   }
 
   void add(const record::PassRow& pass, Procedure& procedure) const {
-    const std::uint64_t end = std::min(pass.last_sample + 1, file_.sample_count());
-    for (std::uint64_t first = pass.first_sample; first < end; first += kAtOnce) {
+    const record::RowSpan there =
+        record::span_of_ticks(file_, record::samples_table(), pass.first_sample,
+                              pass.last_sample - pass.first_sample + 1);
+    const std::uint64_t end = there.first + there.count;
+    for (std::uint64_t first = there.first; first < end; first += kAtOnce) {
       const std::uint64_t count = std::min(kAtOnce, end - first);
       const auto samples = file_.samples(first, count);
       const auto tool = file_.rows<record::ToolRow>(first, count);

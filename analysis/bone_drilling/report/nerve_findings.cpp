@@ -10,6 +10,7 @@
 #include "core/bone/nerve/nerve_rows.h"
 #include "core/bone/record/drilling_tables.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::analysis::drilling {
 namespace {
@@ -67,11 +68,12 @@ bool within(const Stretch& pass, std::uint64_t tick) {
 }
 
 std::vector<bool> Session::drills(const Stretch& pass) const {
-  std::vector<bool> all;
-  const std::uint64_t end = std::min(pass.last + 1, file_.sample_count());
-  for (std::uint64_t first = pass.first; first < end; first += kAtOnce) {
-    for (const auto& row : file_.rows<record::ToolRow>(first, std::min(kAtOnce, end - first))) {
-      all.push_back(row.power && row.immersed > 0 && row.mode == 0);
+  std::vector<bool> all(pass.last - pass.first + 1, false);
+  for (std::uint64_t first = pass.first; first <= pass.last; first += kAtOnce) {
+    const std::uint64_t count = std::min(kAtOnce, pass.last - first + 1);
+    for (const auto& row :
+         record::rows_of_ticks(file_, record::table_of<record::ToolRow>(), first, count)) {
+      all[row.sequence - pass.first] = row.power && row.immersed > 0 && row.mode == 0;
     }
   }
   return all;

@@ -9,6 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/rows/object_rows.h"
 
 namespace haptrial::evaluation {
@@ -102,14 +103,17 @@ SessionContact read_session_contact(const record::SessionReader& session,
   const std::uint64_t begin = contacts.front().sequence, end = contacts.back().sequence;
   const std::uint64_t first = std::max(pass.first_sample, begin - std::min(begin, air));
   const std::uint64_t last = std::min(pass.last_sample, end + air);
-  const record::SampleColumns samples = session.columns(first, last - first + 1);
+  const std::vector<record::Sample> samples =
+      record::rows_of_ticks(session, record::samples_table(), first, last - first + 1);
   auto contact = contacts.begin();
-  for (std::size_t i = 0; i < samples.time_ns.size(); ++i) {
-    const bool touching = contact != contacts.end() && contact->sequence == first + i;
-    const double time = kNanoseconds * static_cast<double>(samples.time_ns[i]);
+  for (const record::Sample& sample : samples) {
+    while (contact != contacts.end() && contact->sequence < sample.sequence) {
+      ++contact;  // its sample is missing
+    }
+    const bool touching = contact != contacts.end() && contact->sequence == sample.sequence;
+    const double time = kNanoseconds * static_cast<double>(sample.time_ns);
     result.recording.pose.time.push_back(time);
-    result.recording.pose.position.emplace_back(
-        touching ? contact->proxy : samples.position.col(static_cast<Eigen::Index>(i)));
+    result.recording.pose.position.emplace_back(touching ? contact->proxy : sample.position);
     result.recording.pose.orientation.push_back(Eigen::Quaterniond::Identity());
     result.recording.depth.push_back(touching ? contact->depth : 0.0);
     result.recording.force.time.push_back(time);

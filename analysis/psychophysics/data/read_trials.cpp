@@ -7,6 +7,7 @@
 #include "core/record/read/marked_trials.h"
 #include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/rows/object_rows.h"
 #include "core/record/rows/session_tables.h"
 #include "core/record/rows/trial_rows.h"
@@ -92,14 +93,17 @@ class SessionTrials {
 
   /// The share of the ticks at the force limit.
   double at_limit(std::uint64_t first, std::uint64_t last) {
-    const std::uint64_t end = std::min<std::uint64_t>(last + 1, reader_.sample_count());
-    if (first >= end) {
+    const record::RowSpan rows =
+        first > last
+            ? record::RowSpan{}
+            : record::span_of_ticks(reader_, record::samples_table(), first, last - first + 1);
+    if (rows.count == 0) {
       return 0.0;
     }
     const auto saturated =
-        reader_.integers(record::samples_table(), "saturated", first, end - first);
+        reader_.integers(record::samples_table(), "saturated", rows.first, rows.count);
     return static_cast<double>(std::count(saturated.begin(), saturated.end(), 1)) /
-           static_cast<double>(end - first);
+           static_cast<double>(rows.count);
   }
 
   void add(const record::VariableRow& row) {

@@ -72,6 +72,26 @@ class TableRows {
     return is_missing(text) ? text : std::string_view();
   }
 
+  /// @throws InputError as CsvTable::refuse_thousands() does
+  void check_numbers() const {
+    using C = TrialColumns;
+    std::vector<std::size_t> columns = factors_;
+    for (const Member member : {&C::level, &C::time, &C::outcome, &C::rating, &C::answer}) {
+      if (const auto at = place(member)) {
+        columns.push_back(*at);
+      }
+    }
+    for (const std::size_t at : columns) {
+      std::vector<std::size_t> rows;
+      for (std::size_t row = 0; row < table_.rows(); ++row) {
+        if (!is_missing(table_.text(row, at))) {
+          rows.push_back(row);
+        }
+      }
+      table_.refuse_thousands(at, rows);
+    }
+  }
+
   ImportedTrial trial(std::size_t row) const {
     using C = TrialColumns;
     ImportedTrial trial;
@@ -232,6 +252,7 @@ void read_table(const fs::path& file, ImportedStudy& study) {
   const std::size_t source = study.sources.size();
   study.sources.push_back({file.filename().string(), sha256_of(text)});
   const TableRows rows(table, study.columns, file.stem().string());
+  rows.check_numbers();
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!rows.passes_filters(row) || !rows.is_trial(row)) {
       ++study.left_out;

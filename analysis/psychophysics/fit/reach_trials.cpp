@@ -8,6 +8,7 @@
 #include "analysis/reaching/zero_phase_filter.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::analysis::trials {
 namespace {
@@ -16,7 +17,7 @@ constexpr double kLead = 0.2;         // of the recording before the go signal [
 constexpr double kErrorAfter = 0.15;  // after onset [s]
 constexpr double kNoPush = 1e-6;      // share of the field below which it pushes to no side
 
-/// The samples of a reach, with those just before it.
+/// The samples of a reach, with those just before it; none if some are missing.
 struct ReachSamples {
   std::vector<double> time;  // from the go signal [s]
   std::vector<Eigen::Vector3d> position, force;
@@ -29,19 +30,20 @@ ReachSamples samples_of(const record::SessionReader& reader, const StudyTrial& t
   const std::uint64_t go = trial.first_sample + stage.first;
   const std::uint64_t first =
       go - std::min<std::uint64_t>(static_cast<std::uint64_t>(kLead * rate), stage.first);
-  const std::uint64_t end = std::min<std::uint64_t>(go + stage.ticks, reader.sample_count());
+  const std::uint64_t ticks = go + stage.ticks - first;
   ReachSamples samples;
-  if (end <= go) {
+  const std::vector<record::Sample> rows =
+      record::rows_of_ticks(reader, record::samples_table(), first, ticks);
+  if (stage.ticks == 0 || rows.size() != ticks) {
     return samples;
   }
-  const std::vector<record::Sample> rows = reader.samples(first, end - first);
   for (const record::Sample& row : rows) {
     samples.time.push_back((static_cast<double>(row.sequence) - static_cast<double>(go)) / rate);
     samples.position.push_back(row.position);
     samples.force.push_back(row.force);
     samples.saturated += row.saturated && row.sequence >= go ? 1.0 : 0.0;
   }
-  samples.saturated /= static_cast<double>(end - go);
+  samples.saturated /= static_cast<double>(stage.ticks);
   return samples;
 }
 
@@ -109,6 +111,37 @@ void turn_to_field(std::vector<StudyReach*>& reaches) {
   }
 }
 
+using PlaceOfTrial = std::map<std::pair<std::size_t, int>, std::size_t>;  // by session and number
+
+/// The planned places of trials in their blocks, so that the cycles of all others stay as they were
+/// planned where a trial was left out, skipped or given up.
+PlaceOfTrial planned_places(const TrialsData& data,
+                            const std::vector<std::optional<ReachRoute>>& routes) {
+  std::map<std::size_t, std::map<int, std::optional<std::string>>>
+      blocks;  // of trials with a reach
+  for (std::size_t i = 0; i < data.trials.size(); ++i) {
+    const StudyTrial& trial = data.trials[i];
+    if (!trial.practice) {
+      const bool without_reach = trial.counts() && !routes[i];
+      auto& block = blocks[trial.session][trial.trial];
+      block = without_reach ? block : factor_level(data, trial, "block");
+    }
+  }
+  PlaceOfTrial places;
+  for (const auto& [session, numbers] : blocks) {
+    std::map<std::string, std::size_t> next;
+    std::optional<std::string> block;
+    for (int number = numbers.begin()->first; number <= numbers.rbegin()->first; ++number) {
+      const auto found = numbers.find(number);
+      block = found != numbers.end() ? found->second : block;
+      if (block) {
+        places[{session, number}] = next[*block]++;
+      }
+    }
+  }
+  return places;
+}
+
 }  // namespace
 
 std::optional<double> StudyReach::turned(const std::optional<double>& value) const {
@@ -122,6 +155,7 @@ std::vector<StudyReach> study_reaches(const TrialsData& data,
                                       int threads) {
   std::vector<StudyReach> reaches;
   std::map<std::string, std::size_t> counted;
+  const PlaceOfTrial places = planned_places(data, routes);
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
     if (!trial.counts() || !routes.at(i)) {
@@ -136,6 +170,7 @@ std::vector<StudyReach> study_reaches(const TrialsData& data,
                  : trial.probe.empty() ? ReachKind::kPlain
                                        : ReachKind::kCatch;
     reach.block = factor_level(data, trial, "block");
+    reach.place = places.at({trial.session, trial.trial});
     reaches.push_back(std::move(reach));
   }
   std::vector<std::vector<StudyReach*>> by_session(data.sessions.size());

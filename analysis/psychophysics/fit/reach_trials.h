@@ -37,8 +37,9 @@ struct StudyReach {
   std::size_t order{0};  // from 0 among the participant's counted trials
   ReachKind kind{ReachKind::kPlain};
   std::string block;
+  std::size_t place{0};  // in it, from 0; a trial that is missing or left out keeps its own free
   ReachRoute way;
-  bool recorded{false};   // the trial has the stage, with samples
+  bool recorded{false};   // the trial has the stage, with all its samples
   bool arrived{false};    // the stage ended because its end was reached
   double saturated{0.0};  // share of the stage's ticks at the force limit
   ReachMetrics metrics;

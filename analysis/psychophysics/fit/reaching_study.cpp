@@ -52,7 +52,6 @@ std::map<BlockKey, std::size_t> add_blocks(const TrialsData& data, ReachingResul
 
 std::vector<ReachIndex> standings(const TrialsData& data, ReachingResult& result) {
   const std::map<BlockKey, std::size_t> blocks = add_blocks(data, result);
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> places;
   for (const StudySession& session : data.sessions) {
     result.participants.push_back(session.participant);
   }
@@ -67,7 +66,7 @@ std::vector<ReachIndex> standings(const TrialsData& data, ReachingResult& result
         std::lower_bound(result.participants.begin(), result.participants.end(), name) -
         result.participants.begin());
     own.block = blocks.at(key_of(data, reach));
-    own.place = places[{own.participant, own.block}]++;
+    own.place = reach.place;
     ReachBlock& of = result.blocks[own.block];
     of.trials = std::max(of.trials, own.place + 1);
     all.push_back(own);

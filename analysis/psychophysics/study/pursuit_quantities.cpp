@@ -16,6 +16,7 @@
 #include "analysis/statistics/design/wording.h"
 #include "core/base/parallel.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/rows/device_rows.h"
 
 namespace haptrial::analysis::trials {
@@ -98,7 +99,11 @@ class SessionPursuits {
     const std::uint64_t end = trial.first_sample + stage->first + stage->ticks;
     const auto begin = std::ranges::lower_bound(targets_, first, {}, &record::TargetRow::sequence);
     const std::uint64_t ticks = end > first ? end - first : 0;
-    const std::vector<record::Sample> samples = reader_.samples(first, ticks);
+    const std::vector<record::Sample> samples =
+        record::rows_of_ticks(reader_, record::samples_table(), first, ticks);
+    if (samples.size() != ticks) {
+      return std::nullopt;  // some are missing, so that no frequency is known
+    }
     Places target, hand;
     for (auto row = begin; row != targets_.end() && row->sequence < end; ++row) {
       if (std::cmp_equal(row->target, plan_.number)) {

@@ -1,5 +1,6 @@
 #include "analysis/psychophysics/study/reach_quantities.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -63,19 +64,17 @@ Measure measure_of(ReachQuantity quantity) {
 
 /// Whether each reach belongs to the plan's cycles of its block.
 std::vector<bool> taken(const ReachingResult& result) {
-  using Place = std::pair<std::size_t, std::size_t>;  // a participant's block
-  const auto place_of = [&](std::size_t i) { return Place{result.persons[i], result.block_of[i]}; };
-  std::map<Place, std::size_t> trials, seen;
+  std::map<std::size_t, std::size_t> last;  // cycle of a block
+  const auto cycle_of = [&](std::size_t i) { return result.reaches[i].place / result.plan.cycle; };
   for (std::size_t i = 0; i < result.reaches.size(); ++i) {
-    ++trials[place_of(i)];
+    std::size_t& cycle = last[result.block_of[i]];
+    cycle = std::max(cycle, cycle_of(i));
   }
   std::vector<bool> all;
   for (std::size_t i = 0; i < result.reaches.size(); ++i) {
-    const Place of = place_of(i);
-    const std::size_t cycle = seen[of]++ / result.plan.cycle;
-    const std::size_t last = (trials[of] - 1) / result.plan.cycle;
-    all.push_back(result.plan.cycles == ReachCycles::kAll ||
-                  cycle == (result.plan.cycles == ReachCycles::kFirst ? 0 : last));
+    const std::size_t wanted =
+        result.plan.cycles == ReachCycles::kFirst ? 0 : last[result.block_of[i]];
+    all.push_back(result.plan.cycles == ReachCycles::kAll || cycle_of(i) == wanted);
   }
   return all;
 }

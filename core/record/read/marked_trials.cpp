@@ -9,6 +9,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/stated_words.h"
+#include "core/record/read/tick_rows.h"
 #include "core/record/rows/session_tables.h"
 
 namespace haptrial::record {
@@ -61,8 +62,9 @@ std::int32_t attempt_of(const PassRow& pass) {
 
 /// Time of the session at which a pass began; that of its tick by the rate if no sample is there.
 std::int64_t begin_of(const SessionReader& reader, const PassRow& pass) {
-  if (pass.first_sample < reader.sample_count()) {
-    return reader.integers(samples_table(), "time_ns", pass.first_sample, 1).front();
+  const std::uint64_t row = row_of_tick(reader, samples_table(), pass.first_sample);
+  if (row < reader.sample_count()) {
+    return reader.integers(samples_table(), "time_ns", row, 1).front();
   }
   return static_cast<std::int64_t>(1e9 * static_cast<double>(pass.first_sample) /
                                    reader.info().rate);

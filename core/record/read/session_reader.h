@@ -54,7 +54,7 @@ class SessionReader {
   std::uint64_t sample_count() const;
   std::size_t chunk_rows() const;  // length of a chunk of /samples
 
-  /// Rows [first, first + count) of /samples. Without gaps a row is its sequence number.
+  /// Rows [first, first + count) of /samples. Those of given ticks: tick_rows.h
   /// @throws std::invalid_argument when they are not all there.
   std::vector<Sample> samples(std::uint64_t first, std::uint64_t count) const;
   SampleColumns columns(std::uint64_t first, std::uint64_t count) const;

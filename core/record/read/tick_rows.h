@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/record/read/session_reader.h"
+#include "core/record/rows/session_tables.h"
 #include "core/record/rows/session_types.h"
 
 namespace haptrial::record {
@@ -26,7 +27,9 @@ void each_sample(const SessionReader& reader, Visit visit) {
 template <class Row>
 std::uint64_t row_of_tick(const SessionReader& reader, const Table<Row>& table,
                           std::uint64_t tick) {
-  const auto at = [&](std::uint64_t row) { return reader.rows(table, row, 1).front().sequence; };
+  const auto at = [&](std::uint64_t row) {
+    return static_cast<std::uint64_t>(reader.integers(table, "sequence", row, 1).front());
+  };
   std::uint64_t high = reader.count(table);
   if (high == 0 || tick <= at(0)) {
     return 0;
@@ -43,15 +46,35 @@ std::uint64_t row_of_tick(const SessionReader& reader, const Table<Row>& table,
   return low;
 }
 
+/// Rows of a table that follow one another.
+struct RowSpan {
+  std::uint64_t first{0};
+  std::uint64_t count{0};
+};
+
 /// The rows of `count` ticks from `first` on; rows that are missing are left out.
+template <class Row>
+RowSpan span_of_ticks(const SessionReader& reader, const Table<Row>& table, std::uint64_t first,
+                      std::uint64_t count) {
+  const std::uint64_t row = row_of_tick(reader, table, first);
+  return {row, row_of_tick(reader, table, first + count) - row};
+}
+
 template <class Row>
 std::vector<Row> rows_of_ticks(const SessionReader& reader, const Table<Row>& table,
                                std::uint64_t first, std::uint64_t count) {
-  const std::uint64_t row = row_of_tick(reader, table, first);
-  std::vector<Row> rows =
-      reader.rows(table, row, std::min<std::uint64_t>(count, reader.count(table) - row));
-  std::erase_if(rows, [&](const Row& r) { return r.sequence >= first + count; });
-  return rows;
+  const RowSpan span = span_of_ticks(reader, table, first, count);
+  return reader.rows(table, span.first, span.count);
+}
+
+/// Where the samples of a pass are in /samples, and in every other table with a row for each tick.
+/// @throws InputError if some of them are missing, or all
+RowSpan span_of_pass(const SessionReader& reader, const PassRow& pass);
+
+/// @throws InputError likewise
+inline std::vector<Sample> samples_of_pass(const SessionReader& reader, const PassRow& pass) {
+  const RowSpan span = span_of_pass(reader, pass);
+  return reader.samples(span.first, span.count);
 }
 
 /// Takes the last row of a block's stimulus away where it follows sooner than the others follow

@@ -67,6 +67,17 @@ TEST(CsvTest, EveryLineEndAndSeparatorReadsTheSame) {
   }
 }
 
+TEST(CsvTest, ASeparatorOfThousandsIsNoDecimalMark) {
+  const std::string german = "t;ms\n0;994\n1;1.304\n2;840\n";
+  EXPECT_THAT(problem_of_numbers(german), HasSubstr("a.csv:3: ms is '1.304'; allowed: a number "
+                                                    "without a separator of thousands"));
+  EXPECT_THAT(problem_of_numbers("t\tms\n0\t994\n1\t1,304\n"), HasSubstr("'1,304'"));
+  EXPECT_THAT(second_column("t,f\n0,1.304\n1,994.000\n"), ElementsAre(1.304, 994.0));
+  EXPECT_THAT(second_column("t,f\n0,1.304\n1,99\n"), ElementsAre(1.304, 99.0));
+  EXPECT_THAT(second_column("t,f\n0,1.304\n1,994\n2,0.5\n"), ElementsAre(1.304, 994.0, 0.5));
+  EXPECT_THAT(second_column("t,f\n0,1.304\n1,994\n2,1304\n"), ElementsAre(1.304, 994.0, 1304.0));
+}
+
 TEST(CsvTest, DecimalCommaWhereCommasDoNotSeparate) {
   EXPECT_THAT(second_column("t;f\n0;1,5\n1;2\n2;-1,25e2\n"), ElementsAre(1.5, 2.0, -125.0));
   EXPECT_THAT(second_column("t\tf\n0\t1,5\n1\t2,5\n"), ElementsAre(1.5, 2.5));

@@ -56,6 +56,7 @@ void add_person(const SimulatedReaches& study, std::size_t person, ReachesOfStud
       reach.trial = made.data.trials.size();
       reach.order = order++;
       reach.block = kBlocks[b];
+      reach.place = i;
       reach.recorded = true;
       reach.metrics.maximum_perpendicular_error = error.next() +
                                                   (second ? study.difference_of_groups : 0.0) +
