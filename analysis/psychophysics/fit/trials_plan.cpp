@@ -520,6 +520,7 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
         if (is_timed(plan) && table.has("level")) {
           plan.by.clear();  // factors may make the level, or vary for other reasons
         }
+        std::erase(plan.by, plan.level);  // one level has no slope
       })
       .custom("by",
               "Factors whose levels are told apart: each combination has a function, d' or "
@@ -529,7 +530,7 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
                 check_by(table, defaults, plan);
               })
       .otherwise(
-          "all factors as written; of detection, identification, reaching, paired and times over a "
+          "all factors but the level as written; of detection, identification, reaching, paired and times over a "
           "level none")
       .derive([](P& plan) {
         if (plan.kind == AnalysisKind::kPaired) {

@@ -362,6 +362,10 @@ FindingTable law_findings(const TrialsResult& result) {
     add(row, "condition", "condition", one.condition);
     add_json(row, "participants", one.participants);
     add(row, "answers_not_above_0", "answers of 0 or below left out", one.not_positive);
+    if (!one.one_level.empty()) {
+      add(row, "left_out", "left out, as they answered at one level only",
+          fmt::format("{}", fmt::join(one.one_level, ", ")));
+    }
     if (!one.law) {
       add_missing(row, "law", "exponent", one.law.because());
       continue;

@@ -43,17 +43,15 @@ struct AnswerRatings {
 
 struct Collected {
   DetectionCounts counts;
-  std::map<double, std::pair<int, int>> ratings;  // value -> noise, signal
+  /// From the surest "no" to the surest "yes", whatever numbers the scale has: noise, signal.
+  std::map<std::pair<int, double>, std::pair<int, int>> ratings;
   AnswerRatings by_answer;
 };
 
-/// How sure, above 0 for "yes"; NaN: not rated.
-double rating_of(const StudyTrial& trial, const TrialsPlan& plan, int outcome) {
+/// How sure; NaN: not rated.
+double rating_of(const StudyTrial& trial, const TrialsPlan& plan) {
   const GivenAnswer* rating = plan.rating.empty() ? nullptr : answer_to(trial, plan.rating);
-  if (rating == nullptr || !std::isfinite(rating->value)) {
-    return kNotKnown;
-  }
-  return outcome == 1 ? rating->value : -rating->value;
+  return rating == nullptr ? kNotKnown : rating->value;
 }
 
 void add(Collected& collected, int signal, int outcome, double rating) {
@@ -62,9 +60,9 @@ void add(Collected& collected, int signal, int outcome, double rating) {
                               : (outcome == 1 ? c.false_alarms : c.correct_rejections);
   count += 1.0;
   if (std::isfinite(rating)) {
-    auto& both = collected.ratings[rating];
+    auto& both = collected.ratings[{outcome, outcome == 1 ? rating : -rating}];
     (signal == 1 ? both.second : both.first) += 1;
-    collected.by_answer.add(signal, outcome, outcome == 1 ? rating : -rating);
+    collected.by_answer.add(signal, outcome, rating);
   }
 }
 
@@ -81,7 +79,7 @@ std::vector<DetectedCondition> detected(const TrialsData& data, const TrialsPlan
     const int signal = signal_in(trial, plan, outcome);
     if (signal >= 0) {
       add(all[{data.session_of(trial).participant, factors_of(data, trial, plan)}], signal, outcome,
-          rating_of(trial, plan, outcome));
+          rating_of(trial, plan));
     }
   }
   std::vector<DetectedCondition> result;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "analysis/psychophysics/fit/series.h"
 
@@ -25,6 +26,22 @@ std::size_t number_of(std::vector<std::string>& names, const std::string& name) 
   }
   names.push_back(name);
   return names.size() - 1;
+}
+
+/// One level has no slope; the others keep their exponents.
+void leave_out_one_level(MagnitudeCondition& one) {
+  std::map<std::size_t, std::set<double>> levels;
+  for (const MagnitudeTrial& trial : one.trials) {
+    levels[trial.participant].insert(trial.level);
+  }
+  for (const auto& [participant, own] : levels) {
+    if (own.size() < 2) {
+      one.one_level.push_back(one.participants[participant]);
+    }
+  }
+  std::erase_if(one.trials, [&](const MagnitudeTrial& trial) {
+    return levels.at(trial.participant).size() < 2;
+  });
 }
 
 }  // namespace
@@ -49,10 +66,14 @@ std::vector<MagnitudeCondition> magnitudes(const TrialsData& data, const TrialsP
   }
   std::vector<MagnitudeCondition> result;
   for (auto& [levels, own] : all) {
+    leave_out_one_level(own);
     own.levels = levels;
     own.condition = fmt::format("{}", fmt::join(levels, ", "));
-    own.law = own.trials.empty() ? Defined<PowerLaw>(Undefined{"no answer is above 0"})
-                                 : power_law(own.trials);
+    own.law = own.trials.empty()
+                  ? Defined<PowerLaw>(Undefined{own.one_level.empty() ? "no answer is above 0"
+                                                                      : "nobody has answers at "
+                                                                        "several levels"})
+                  : power_law(own.trials);
     result.push_back(std::move(own));
   }
   return result;

@@ -16,6 +16,7 @@ struct MagnitudeCondition {
   std::vector<std::string> participants;  // by the numbers in `law`
   std::vector<MagnitudeTrial> trials;
   Defined<PowerLaw> law{Undefined{"nothing was fitted"}};
+  std::vector<std::string> one_level;  // participants who answered at one level only: left out
   std::size_t not_positive{0};  // answers or measures of 0 or below, without logarithm: left out
 };
 

@@ -102,7 +102,13 @@ TEST(Decisions, RatingsTellUnequalVariances) {
   }
   TrialsPlan plan = test::plan_of(study);
   plan.plan = parse_analysis_plan({"on > off"}, "", "tests");
+  TrialsData from_zero = data;  // the numbers of the scale say nothing, where it begins neither
+  for (StudyTrial& trial : from_zero.trials) {
+    trial.answers[1].value -= 1.0;
+  }
   const TrialsResult result = analyze(std::move(data), plan, {}, 1);
+  const TrialsResult other = analyze(std::move(from_zero), plan, {}, 1);
+  EXPECT_EQ(quantity_of(result, "d_a").means[0]->mean, quantity_of(other, "d_a").means[0]->mean);
   for (const std::size_t condition : {std::size_t{0}, std::size_t{1}}) {
     const auto& d_a = *quantity_of(result, "d_a").means[condition];
     EXPECT_NEAR(d_a.mean, 2.0 / std::sqrt((1.0 + 1.6 * 1.6) / 2.0), 0.1);
