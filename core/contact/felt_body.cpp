@@ -30,7 +30,7 @@ FeltBody::FeltBody(geometry::Mesh shape)
       distance(mesh, surface),
       size(geometry::bounds(mesh).diagonal().norm()),
       closed(is_closed(mesh)),
-      outwards(geometry::signed_volume(mesh) >= 0.0) {}
+      facing(closed ? geometry::facing(mesh) : geometry::Facing::kOutwards) {}
 
 SharedBody felt_body(geometry::Mesh mesh) {
   constexpr std::size_t kKept = 4;

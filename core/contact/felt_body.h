@@ -5,6 +5,7 @@
 #include "core/contact/contact_surface.h"
 #include "core/contact/signed_distance.h"
 #include "core/geometry/mesh/mesh.h"
+#include "core/geometry/volume/mesh_repair.h"
 
 namespace haptrial::contact {
 
@@ -19,9 +20,9 @@ struct FeltBody {
   geometry::Mesh mesh;
   ContactSurface surface;
   SignedDistance distance;
-  double size{0.0};     // the diagonal of its box [m]
-  bool closed{false};   // every side of a triangle has one other on it: there is an inside
-  bool outwards{true};  // the faces of a closed body, in the mean; else it is a room
+  double size{0.0};    // the diagonal of its box [m]
+  bool closed{false};  // every side of a triangle has one other on it: there is an inside
+  geometry::Facing facing{geometry::Facing::kOutwards};  // of a closed body; inwards: it is a room
 };
 
 using SharedBody = std::shared_ptr<const FeltBody>;

@@ -14,9 +14,10 @@ constexpr double kTooSmall = 0.005;
 }  // namespace
 
 void check_body(const contact::FeltBody& body) {
-  if (body.closed && !body.outwards) {
+  if (body.facing != geometry::Facing::kOutwards) {
     throw std::invalid_argument(
-        "its faces look inwards; turn them with haptrial mesh repair MESH NEW_MESH");
+        fmt::format("{} look inwards; turn them with haptrial mesh repair MESH NEW_MESH",
+                    body.facing == geometry::Facing::kInwards ? "its faces" : "some of its faces"));
   }
 }
 

@@ -141,6 +141,9 @@ MeshReport check_mesh(const Mesh& mesh) {
   const EdgeTable edges(mesh);
   check_edges(mesh, edges, report);
   check_topology(mesh, edges, report);
+  if (report.closed && report.oriented()) {
+    report.facing = facing(mesh);
+  }
   return report;
 }
 
@@ -150,14 +153,26 @@ std::string counted(std::size_t number, const char* one, const char* many) {
   return fmt::format("{} {}", number, number == 1 ? one : many);
 }
 
+const char* words_of(Facing facing) {
+  switch (facing) {
+    case Facing::kOutwards:
+      return ", faces look outwards";
+    case Facing::kInwards:
+      return ", faces look inwards";
+    case Facing::kMixed:
+      break;
+  }
+  return ", faces of some parts look inwards and of others outwards, so that the volume is a "
+         "difference";
+}
+
 std::string surface_sentence(const MeshReport& r) {
   if (r.edges == 0) {
     return "no surface: every triangle repeats a corner";
   }
   if (r.closed) {
-    return fmt::format(
-        "closed{}{}", r.manifold() ? ", manifold" : "",
-        r.oriented() ? (r.volume >= 0.0 ? ", faces look outwards" : ", faces look inwards") : "");
+    return fmt::format("closed{}{}", r.manifold() ? ", manifold" : "",
+                       r.oriented() ? words_of(r.facing) : "");
   }
   if (r.boundary_edges == 0) {
     return fmt::format(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry/mesh/mesh.h"
+#include "core/geometry/volume/mesh_repair.h"
 
 namespace haptrial::geometry {
 
@@ -32,8 +33,9 @@ struct MeshReport {
   std::size_t one_sided_components{0};
   std::optional<std::size_t> genus;  // handles of all components; none where edges are not manifold
 
-  double area{0.0};    // [m²]
-  double volume{0.0};  // [m³]; negative where faces look inwards; of closed meshes
+  double area{0.0};                  // [m²]
+  double volume{0.0};                // [m³]; negative where faces look inwards; of closed meshes
+  Facing facing{Facing::kOutwards};  // of closed, oriented meshes
   Eigen::AlignedBox3d box;
 
   /// Every edge belongs to an even number of triangles: inside and outside differ by parity.

@@ -336,6 +336,25 @@ std::size_t orient(Mesh& mesh) {
   return changed;
 }
 
+Facing facing(const Mesh& mesh) {
+  const EdgeTable edges(mesh);
+  const Orientation turned = orientation(mesh, edges);
+  const std::vector<Component> parts = components_of(mesh, edges, turned);
+  std::optional<Bvh> hierarchy;
+  if (parts.size() > 1) {
+    hierarchy.emplace(mesh);
+  }
+  std::size_t outer = 0;
+  std::size_t inwards = 0;
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (parts[p].closed && !(hierarchy && is_cavity(mesh, *hierarchy, turned, parts, p))) {
+      ++outer;
+      inwards += volume_of(mesh, parts[p]) < 0.0 ? 1 : 0;
+    }
+  }
+  return inwards == 0 ? Facing::kOutwards : inwards == outer ? Facing::kInwards : Facing::kMixed;
+}
+
 RepairReport repair(Mesh& mesh, const RepairOptions& options) {
   if (!(options.weld_tolerance >= 0.0) || !std::isfinite(options.weld_tolerance)) {
     throw std::invalid_argument("repair: the weld tolerance must be 0 or more");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/geometry/mesh/mesh.h"
 
@@ -30,6 +31,11 @@ std::size_t remove_unreferenced(Mesh& mesh);
 /// they bound a cavity (inside an odd number of others), open ones outwards seen from their middle.
 /// One-sided components stay as they are. @returns how many triangles turned.
 std::size_t orient(Mesh& mesh);
+
+/// Where the faces of the closed components of an oriented mesh look, cavities left out: all of
+/// them outwards, all inwards as those of a room, or some this way and some that.
+enum class Facing : std::uint8_t { kOutwards, kInwards, kMixed };
+Facing facing(const Mesh& mesh);
 
 struct RepairOptions {
   double weld_tolerance{0.0};  // >= 0 [m]

@@ -80,7 +80,7 @@ std::vector<std::string> words_of_rigid_objects(const std::vector<scene::Field>&
         bound.passive ? "passive with more than" : "its spring alone needs", needed, rate,
         bound.passive ? "" : ", and nothing is proven of it, since " + doubt(*p), p->gains.damping,
         damping));
-    if (p->body && p->body->closed && !p->body->outwards) {
+    if (p->body && p->body->facing == geometry::Facing::kInwards) {
       lines.push_back(fmt::format(
           "objects.{}: its faces look inwards, so that it is a room, free inside and solid around; "
           "haptrial mesh repair turns them",

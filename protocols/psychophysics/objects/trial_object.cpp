@@ -233,6 +233,12 @@ void load_mesh(TrialObject& object, const std::filesystem::path& file) {
   const std::string bytes = file_text(file);
   object.body =
       contact::felt_body(geometry::parse_mesh(bytes, geometry::mesh_format(file), file.string()));
+  if (object.body->facing == geometry::Facing::kMixed) {
+    throw InputError(fmt::format(
+        "{}: faces of some of its parts look inwards and of others outwards, so that free space "
+        "would push the hand; haptrial mesh repair turns them",
+        file.string()));
+  }
   object.file_bytes = bytes.size();
   object.file_checksum = fnv1a(bytes);
   if (object.yields) {

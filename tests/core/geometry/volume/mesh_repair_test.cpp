@@ -161,6 +161,22 @@ TEST(OrientTest, CavitiesLookInwardsAndWhatFloatsInThemOutwards) {
   EXPECT_NEAR(signed_volume(mesh), (27.0 - 8.0 + 1.0) * unit, 1e-9);
 }
 
+TEST(FacingTest, EachComponentCountsAndCavitiesDoNot) {
+  const auto beside = [](Mesh mesh) {
+    for (Eigen::Vector3d& vertex : mesh.vertices) {
+      vertex.x() += 9.0;
+    }
+    return mesh;
+  };
+  const Mesh large = make_sphere(3.0, 8);
+  const Mesh small = make_sphere(1.0, 8);
+  EXPECT_EQ(facing(joined(large, beside(small))), Facing::kOutwards);
+  EXPECT_EQ(facing(joined(large, beside(inverted(small)))), Facing::kMixed);
+  EXPECT_EQ(facing(joined(inverted(large), beside(inverted(small)))), Facing::kInwards);
+  EXPECT_EQ(facing(joined(large, inverted(small))), Facing::kOutwards) << "a cavity";
+  EXPECT_EQ(facing(joined(inverted(large), small)), Facing::kInwards) << "a room with a ball in it";
+}
+
 TEST(OrientTest, PartsThatOverlapAllLookOutwards) {
   const Mesh sphere = make_sphere(1.0, 8);
   Mesh moved = sphere;
