@@ -5,12 +5,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
 
 #include "analysis/bone_drilling/metrics/metrics.h"
+#include "core/bone/data/load_bone.h"
 #include "core/bone/record/bone_rows.h"
 #include "core/bone/record/drilling_tables.h"
+#include "core/geometry/files/mesh_io.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/record/read/session_reader.h"
 #include "experiments/studies/drilling/procedure_setup.h"
 #include "protocols/bone_drilling/definition/bone_definition.h"
@@ -88,6 +92,24 @@ TEST_F(OsteotomySessionTest, TheReplayEndsWithTheSameBoneAndEveryPieceInItsPlace
   const test::CommandResult same = test::run_command("haptrial replay '" + file().string() + "'");
   EXPECT_EQ(same.status, 0) << same.errors;
   EXPECT_THAT(same.output, HasSubstr("the same bone"));
+}
+
+/// All of the bone, the moved fragment included: as much as the labels say is left.
+TEST_F(OsteotomySessionTest, TheExportedMeshHasEveryPieceWhereItLies) {
+  const auto exported = [](const char* name) {
+    const std::string out = (*folder_ / name).string();
+    return test::run_command("haptrial bone export '" + file().string() + "' '" + out + "'").output;
+  };
+  EXPECT_THAT(exported("jaw.seg.nrrd"), HasSubstr("labels have them where they were cut"));
+  exported("jaw.stl");
+  const bone::BoneModel labels = bone::load_bone(*folder_ / "jaw.seg.nrrd");
+  std::size_t left = 0;
+  for (const std::uint8_t label : labels.labels) {
+    left += label != 0 && !labels.structures[label].name.starts_with("removed") ? 1 : 0;
+  }
+  const double volume = geometry::signed_volume(geometry::read_mesh(*folder_ / "jaw.stl"));  // mm³
+  const double voxel = std::pow(1e3 * labels.grid.spacing, 3);
+  EXPECT_NEAR(volume, voxel * static_cast<double>(left), 0.02 * volume);
 }
 
 TEST_F(OsteotomySessionTest, AMissingToolOfTheHandIsNamed) {

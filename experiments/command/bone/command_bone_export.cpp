@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/nearest.h"
 #include "core/bone/data/anatomy.h"
@@ -93,13 +94,49 @@ std::uint8_t label_of(const BoneExportOptions& options, const bone::BoneModel& m
                                hint.empty() ? ";" : hint, fmt::join(known, ", ")));
 }
 
+bool is_moved(const bone::BoneWorld& world, int piece) {
+  return !world.pose(piece).isApprox(world.pose(0), 1e-9);
+}
+
+/// Every piece where it came to lie, in the frame of the bone itself.
+geometry::Mesh mesh_of_pieces(const bone::BoneWorld& world) {
+  geometry::Mesh all;
+  for (int p = 0; p < world.pieces(); ++p) {
+    const geometry::Mesh piece = bone::surface_mesh(world.volume(p));
+    const Eigen::Isometry3d to_bone = world.pose(0).inverse() * world.pose(p);
+    const auto first = static_cast<std::int32_t>(all.vertices.size());
+    for (const Eigen::Vector3d& vertex : piece.vertices) {
+      all.vertices.emplace_back(to_bone * vertex);
+    }
+    for (const geometry::Triangle& t : piece.triangles) {
+      all.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    }
+  }
+  return all;
+}
+
+/// Labels have one grid, which a piece that was moved has left.
+void print_moved(const Exported& exported) {
+  if (!exported.drilled) {
+    return;
+  }
+  const auto& world = std::as_const(*exported.drilled->stage->simulator).world();
+  int moved = 0;
+  for (int p = 1; p < world.pieces(); ++p) {
+    moved += world.volume(p).amount() > 0.0 && is_moved(world, p) ? 1 : 0;
+  }
+  if (moved > 0) {
+    fmt::print("moved       {}; labels have them where they were cut, a mesh where they lie\n",
+               counted(moved, "piece", "pieces"));
+  }
+}
+
 geometry::Mesh mesh_of(const BoneExportOptions& options, const Exported& exported) {
   geometry::Mesh mesh;
   if (!options.structure.empty()) {
     mesh = bone::structure_mesh(exported.model, label_of(options, exported.model));
   } else if (exported.drilled) {
-    const auto& world = std::as_const(*exported.drilled->stage->simulator).world();
-    mesh = bone::surface_mesh(world.volume(0));
+    mesh = mesh_of_pieces(std::as_const(*exported.drilled->stage->simulator).world());
   } else {
     mesh = bone::surface_mesh(bone::BoneVolume(exported.model));
   }
@@ -123,6 +160,7 @@ int bone_export(const BoneExportOptions& options) {
   const Exported exported = load(options);
   print_removed(exported);
   if (volume) {
+    print_moved(exported);
     bone::BoneModel labels = exported.model;
     labels.density.clear();
     bone::save_bone(out, labels, options.overwrite);
