@@ -162,7 +162,16 @@ int Definition::sessions_of(std::string_view group) const {
 }
 
 bool Definition::is_led(int session, const GivenPlace& place) const {
-  return session_plan(session).gives && is_given(tutoring.led, place);
+  return session_plan(session).gives && is_given(tutoring.led, in_course(session, place));
+}
+
+GivenPlace Definition::in_course(int session, GivenPlace place) const {
+  const bool practice = place.trial < 1;
+  for (int earlier = 1; earlier < session && !practice; ++earlier) {
+    const bool counts = comes(earlier, place.group) && session_plan(earlier).gives;
+    place.trial += counts ? trials_in(earlier) : 0;
+  }
+  return place;
 }
 
 void check_common(Table& root, Definition& definition) {

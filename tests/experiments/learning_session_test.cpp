@@ -251,5 +251,15 @@ TEST_F(LearningSessionTest, ProceduresOfEarlierDaysAreCountedByGroup) {
   EXPECT_EQ(d.sessions_of("control"), 3);
 }
 
+/// With one procedure a session, "every other" would else give a person one condition for ever.
+TEST_F(LearningSessionTest, EveryOtherProcedureIsEveryOtherOfTheCourse) {
+  const Experiment experiment = load_experiment(kStudy);
+  const auto& d = dynamic_cast<const protocols::BoneDefinition&>(*experiment.definition);
+  EXPECT_EQ(d.in_course(2, {1, 0, "hints"}).trial, 1) << "the pre-test gives nothing";
+  EXPECT_EQ(d.in_course(3, {1, 0, "hints"}).trial, 3);
+  EXPECT_EQ(d.in_course(3, {0, 0, "hints"}).trial, 0) << "practice";
+  EXPECT_EQ(d.in_course(3, {1, 0, "control"}).trial, 1) << "did not come to the training";
+}
+
 }  // namespace
 }  // namespace haptrial::experiments::learning_session_test

@@ -151,6 +151,7 @@ struct BoneDefinition : Definition {
   int procedures_before(int session, std::string_view group) const;
 
   int sessions() const override { return design.sessions; }
+  int trials_in(int session) const override { return procedures_in(session); }
   std::string case_of_session() const override { return case_name; }
   PedalUse pedal_use() const override;
   std::vector<ButtonUse> button_uses() const override;

@@ -41,7 +41,8 @@ GivenPlace given_place(const BoneDefinition& d, const ProcedurePlace& place) {
 }
 
 bool gives(const BoneDefinition& d, const GivenIn& in, const ProcedurePlace& place) {
-  return d.session_plan(place.session).gives && is_given(in, given_place(d, place));
+  return d.session_plan(place.session).gives &&
+         is_given(in, d.in_course(place.session, given_place(d, place)));
 }
 
 /// Whether the definition says who is led; else --tutor leads everybody, and is no condition.
