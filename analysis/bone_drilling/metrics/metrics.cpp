@@ -32,25 +32,36 @@ Value scaled(const Value& value, double factor) {
 
 Value count(std::uint64_t number) { return static_cast<double>(number); }
 
-/// Nothing where it is not known what is vital.
+/// Those of vital structures; a tear of soft tissue that is not vital stands among all. Nothing
+/// where it is not known what is vital.
+std::optional<std::vector<Injury>> vital_injuries(const Parts& p) {
+  std::vector<Injury> vital = p.summary.injuries;
+  std::erase_if(vital, [&](const Injury& injury) {
+    return !p.procedure.bone->structures.at(injury.label).vital;
+  });
+  return vital.empty() ? std::nullopt : std::optional(std::move(vital));
+}
+
 Value injured_voxels(const Parts& p) {
-  if (p.summary.injuries.empty()) {
+  const auto injuries = vital_injuries(p);
+  if (!injuries) {
     return std::nullopt;
   }
   std::uint64_t sum = 0;
-  for (const Injury& injury : p.summary.injuries) {
+  for (const Injury& injury : *injuries) {
     sum += injury.voxels;
   }
   return count(sum);
 }
 
 Value injured_structures(const Parts& p) {
-  if (p.summary.injuries.empty()) {
+  const auto injuries = vital_injuries(p);
+  if (!injuries) {
     return std::nullopt;
   }
   std::set<std::string> injured;  // bones of old sessions have several labels of one name
-  for (const Injury& injury : p.summary.injuries) {
-    if (injury.voxels > 0) {
+  for (const Injury& injury : *injuries) {
+    if (injury.voxels > 0 || injury.tears > 0) {
       injured.insert(injury.structure);
     }
   }

@@ -201,14 +201,22 @@ TetMesh block_body(const Vector3d& size, int resolution) {
   const double spacing = size.maxCoeff() / resolution;
   solid.grid.spacing = spacing;
   solid.grid.origin = Vector3d::Constant(0.5 * spacing);
+  constexpr double kWhole = 1e-9;  // of a side: a whole number of cubes
+  Vector3d stretch = Vector3d::Ones();
   std::size_t count = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    solid.grid.size[axis] =
-        std::max(1, static_cast<int>(std::lround(size[static_cast<Eigen::Index>(axis)] / spacing)));
-    count *= static_cast<std::size_t>(solid.grid.size[axis]);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const int cells = std::max(1, static_cast<int>(std::lround(size[axis] / spacing)));
+    const double side = size[axis] / (cells * spacing);
+    stretch[axis] = std::abs(side - 1.0) > kWhole ? side : 1.0;
+    solid.grid.size[static_cast<std::size_t>(axis)] = cells;
+    count *= static_cast<std::size_t>(cells);
   }
   solid.labels.assign(count, geometry::VoxelLabel::kInside);
-  return geometry::tetrahedralize(solid);
+  TetMesh mesh = geometry::tetrahedralize(solid);
+  for (Vector3d& vertex : mesh.vertices) {
+    vertex = vertex.cwiseProduct(stretch);
+  }
+  return mesh;
 }
 
 namespace {

@@ -29,8 +29,9 @@ struct TetgenColumns {
 geometry::TetMesh read_tetgen(const std::filesystem::path& node_file, double scale,
                               TetgenColumns* columns = nullptr);
 
-/// A block of cubes, five tetrahedra each, its lowest corner at the origin.
-/// @param resolution  cubes along the longest side; the others are rounded to whole ones
+/// A block of cells, five tetrahedra each, its lowest corner at the origin. Cells are cubes where
+/// the sides allow it; else they are longer or shorter along a side, which is as long as stated.
+/// @param resolution  cells along the longest side
 geometry::TetMesh block_body(const Eigen::Vector3d& size, int resolution);
 
 }  // namespace haptrial::deformable
