@@ -12,6 +12,7 @@
 #include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/nearest.h"
 #include "core/render/flat/typesetter.h"
 #include "core/render/gl/image.h"
 #include "experiments/screen/video_player.h"
@@ -39,7 +40,29 @@ void refuse_session(const std::filesystem::path& file) {
 
 /// Notes what recorded sessions may have, but no session may begin with. Such bounds, which a later
 /// version adds, stand here and not in a schema, since recordings of every version can be read.
+/// Pages after a block that never ends would never be shown.
+void check_blocks_of_pages(Table& root, const protocols::Definition& definition) {
+  if (definition.pages.after_block.empty()) {
+    return;
+  }
+  const std::vector<std::string> known = definition.block_names();
+  Table pages = root.table("pages");
+  Table blocks = pages.table("after_block");
+  for (const auto& [block, names] : definition.pages.after_block) {
+    if (known.empty()) {
+      blocks.reject(block,
+                    "names a block, and those of this protocol have no names; write the "
+                    "pages in before or after");
+    } else if (std::ranges::find(known, block) == known.end()) {
+      const std::string hint = did_you_mean(block, known);
+      blocks.reject(block, fmt::format("is no block{} allowed: {}", hint.empty() ? ";" : hint,
+                                       fmt::join(known, ", ")));
+    }
+  }
+}
+
 void check_new_session(Table& root, const protocols::Definition& definition) {
+  check_blocks_of_pages(root, definition);
   Table envelope = root.table("envelope");
   device::check_new_envelope(envelope, definition.envelope);
   channel::check_lines(root, definition.channels);

@@ -143,6 +143,8 @@ struct Definition {
   virtual std::vector<std::string> description() const = 0;
   /// Lines on how firmly the loop lets the devices be held, for a check of a device.
   virtual std::vector<std::string> margins() const { return {}; }
+  /// Names of its blocks; none where blocks have no names.
+  virtual std::vector<std::string> block_names() const { return {}; }
   /// Notes what recorded sessions may have, but no session may begin with.
   virtual void check_new_session(Table& root) const { static_cast<void>(root); }
   /// Sentences on what is allowed but spoils the data without a word. None where all is well.

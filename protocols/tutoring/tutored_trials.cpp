@@ -40,6 +40,8 @@ class TutoredTrials final : public Trials {
   Extent extent(int most) const override { return inner_->extent(most); }
   std::optional<PlannedTrial> next(const Outcome* last) override { return inner_->next(last); }
   bool presents_aborted_again() const override { return inner_->presents_aborted_again(); }
+  bool can_take_back() const override { return inner_->can_take_back(); }
+  std::optional<PlannedTrial> take_back() override { return inner_->take_back(); }
   std::span<const record::Phase> phases() const override { return inner_->phases(); }
   std::unique_ptr<Rig> virtual_rig() const override { return inner_->virtual_rig(); }
   std::vector<stimulus::Observer*> observers() override { return inner_->observers(); }

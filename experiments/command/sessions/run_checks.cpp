@@ -323,6 +323,12 @@ void check_recording(const RunOptions& options, const protocols::Protocol& proto
   if (!file) {
     return;
   }
+  if (tips > 1) {
+    throw InputError(
+        fmt::format("--device replay:{}: a replay moves one device by one recorded "
+                    "hand, and {} drives {}",
+                    *file, setup.file_name, counted(tips, "device", "devices")));
+  }
   const record::SessionReader reader(*file);
   const record::SessionInfo& info = reader.info();
   if (info.subject != options.subject) {

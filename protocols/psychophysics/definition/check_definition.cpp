@@ -339,6 +339,14 @@ void check_procedures(Table& root, const TrialsDefinition& d) {
   check_variables(root, d);
 }
 
+std::vector<std::string> TrialsDefinition::block_names() const {
+  std::vector<std::string> names;
+  for (const Block& block : order.blocks) {
+    names.push_back(block.name);
+  }
+  return names;
+}
+
 void TrialsDefinition::check_new_session(Table& root) const {
   for (const Factor& factor : order.factors) {
     check_level_words(root, factor);

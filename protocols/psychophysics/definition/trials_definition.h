@@ -72,6 +72,7 @@ struct TrialsDefinition : Definition {
   bool has_target() const override { return false; }
   bool hears_pointer() const override;
   std::vector<std::string> description() const override;
+  std::vector<std::string> block_names() const override;
   void check_new_session(Table& root) const override;
   std::vector<std::string> warnings() const override;
   double longest(int trials) const override;
