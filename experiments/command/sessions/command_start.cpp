@@ -276,7 +276,8 @@ int start(const StartOptions& asked) {
     throw InputError("--json is given without --check; add --check or leave it out");
   }
   if (!options.card.empty()) {
-    const Experiment experiment = load_experiment(options.definition, options.language);
+    const Experiment experiment =
+        load_experiment(options.definition, options.language, given_keys(options.set));
     write_emergency_card(options, experiment, Keyboard::can_read(), options.card);
     fmt::print("{}: print it and lay it beside the device\n", options.card);
     return 0;
@@ -288,7 +289,8 @@ int start(const StartOptions& asked) {
         "run runs the session");
   }
   check_run_options(options);
-  const Experiment experiment = load_experiment(options.definition, options.language);
+  const Experiment experiment =
+      load_experiment(options.definition, options.language, given_keys(options.set));
   const SessionChecks found = session_checks(options, experiment);
   if (options.json) {
     print_json(options, found);
