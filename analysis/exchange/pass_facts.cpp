@@ -27,8 +27,9 @@ class Collector {
  public:
   explicit Collector(std::size_t passes) { facts_.cells.resize(passes); }
 
-  void add(std::int32_t pass, const ColumnDoc& column, const std::string& text) {
+  void add(std::int32_t pass, ColumnDoc column, const std::string& text) {
     if (pass >= 0 && static_cast<std::size_t>(pass) < facts_.cells.size()) {
+      tell_apart(column);
       merge_columns({column}, facts_.columns);
       facts_.cells[static_cast<std::size_t>(pass)][column.name] = text;
     }
@@ -36,10 +37,23 @@ class Collector {
   void add(std::int32_t pass, const ColumnDoc& column, double number) {
     add(pass, column, std::isfinite(number) ? fmt::format("{}", number) : std::string());
   }
+  /// @param behind  the name of a column that is there already as another
+  void begin(const char* behind) { behind_ = behind; }
   PassFacts take() { return std::move(facts_); }
 
  private:
+  /// A question may have the name of a variable, and a variable that of a column here.
+  void tell_apart(ColumnDoc& column) const {
+    const auto is_another = [&column](const ColumnDoc& each) {
+      return each.name == column.name && each.description != column.description;
+    };
+    while (std::ranges::any_of(facts_.columns, is_another)) {
+      column.name += behind_;
+    }
+  }
+
   PassFacts facts_;
+  std::string behind_;
 };
 
 /// Names that stand in columns of their own, or are those of the pass itself.
@@ -48,6 +62,7 @@ bool is_known(const std::string& name) {
 }
 
 void add_variables(const record::SessionReader& reader, Collector& to) {
+  to.begin("_value");
   for (const record::VariableRow& row : reader.rows<record::VariableRow>()) {
     if (is_known(row.name)) {
       continue;
@@ -65,6 +80,7 @@ void add_variables(const record::SessionReader& reader, Collector& to) {
 }
 
 void add_levels(const record::SessionReader& reader, Collector& to) {
+  to.begin("_level");
   for (const record::LevelRow& row : reader.rows<record::LevelRow>()) {
     to.add(row.pass, {"track", "", "the track that chose the level"}, row.track);
     to.add(row.pass,
@@ -75,6 +91,7 @@ void add_levels(const record::SessionReader& reader, Collector& to) {
 }
 
 void add_answers(const record::SessionReader& reader, Collector& to) {
+  to.begin("_answer");
   std::string first;
   for (const record::ResponseRow& row : reader.responses()) {
     first = first.empty() ? row.question : first;

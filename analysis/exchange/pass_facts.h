@@ -17,7 +17,8 @@ struct PassFacts {
 };
 
 /// The first question's reaction time has the column "response_time", as BIDS names it. A name that
-/// the table of passes has already gets "_value" behind it.
+/// the table of passes has already gets "_value" behind it, and so does a variable with the name of
+/// another column; a question with the name of a variable gets "_answer".
 PassFacts pass_facts(const record::SessionReader& reader);
 
 /// Adds the columns that are not there, by name.

@@ -80,7 +80,7 @@ analysis::AnalysisPlan plan_for(const std::vector<std::string>& planned,
                                 std::vector<std::string>& remarks) {
   const analysis::AnalysisPlan given = plan_of(planned, reference);
   if (!given.tests.empty()) {
-    plan.tests = given.tests;
+    plan = analysis::with_tests(std::move(plan), given.tests);
     remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
   }
   if (!given.reference.empty()) {

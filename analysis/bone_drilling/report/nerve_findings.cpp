@@ -300,11 +300,11 @@ std::string nerves_csv(const std::vector<NerveProcedure>& procedures) {
   for (const NerveProcedure& p : procedures) {
     const std::optional<double> reaction = p.reaction();
     for (const NerveCounts& nerve : p.nerves) {
-      text += fmt::format("{},{},{},{},{},{},{:.3f},{:.3f},{},{},{},{},{:.3f},{}\n", p.session,
-                          p.participant, p.group, p.number, p.simulated ? 1 : 0, p.condition,
-                          p.duration, p.drilling, field(nerve.nerve), nerve.bursts, nerve.trains,
-                          nerve.responses, nerve.train_time,
-                          reaction ? fmt::format("{:.3f}", *reaction) : "");
+      text += fmt::format("{},{},{},{},{},{},{:.3f},{:.3f},{},{},{},{},{:.3f},{}\n",
+                          field(p.session), field(p.participant), field(p.group), p.number,
+                          p.simulated ? 1 : 0, field(p.condition), p.duration, p.drilling,
+                          field(nerve.nerve), nerve.bursts, nerve.trains, nerve.responses,
+                          nerve.train_time, reaction ? fmt::format("{:.3f}", *reaction) : "");
     }
   }
   return text;

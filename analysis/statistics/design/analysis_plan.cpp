@@ -153,7 +153,18 @@ const Schema<AnalysisPlan>& tests_beside_schema() {
   return schema;
 }
 
+AnalysisPlan with_tests(AnalysisPlan plan, std::vector<PlannedTest> tests) {
+  if (plan.sequential && !plan.tests.empty()) {
+    plan.decides = decisive_test(plan);
+  }
+  plan.tests = std::move(tests);
+  return plan;
+}
+
 const PlannedTest& decisive_test(const AnalysisPlan& plan) {
+  if (plan.decides) {
+    return *plan.decides;
+  }
   const auto found = std::ranges::find(plan.tests, plan.sequential->test,
                                        [](const PlannedTest& test) { return text_of(test); });
   return found != plan.tests.end() ? *found : plan.tests.front();

@@ -46,6 +46,7 @@ struct AnalysisPlan {
   TestsBeside beside{};
   Covariate covariate{};
   std::optional<SequentialPlan> sequential{};  // none: everybody comes before the first test
+  std::optional<PlannedTest> decides{};        // if `tests` are others than the definition's
 };
 
 /// A plan in words. Each test is as "visual < haptic"; a side is a condition, or in a study of
@@ -61,6 +62,9 @@ std::string text_of(const PlannedTest& test);
 /// The keys of an [analysis] table that ask for tests beside the planned ones, and that say which
 /// of them decides when the study ends; read after the planned tests.
 const Schema<AnalysisPlan>& tests_beside_schema();
+/// The plan with other tests in place of its own; all else stays, and so does the test that decides
+/// when the study ends.
+AnalysisPlan with_tests(AnalysisPlan plan, std::vector<PlannedTest> tests);
 /// The planned test that decides. @param plan  with `sequential`, whose test is a planned one
 const PlannedTest& decisive_test(const AnalysisPlan& plan);
 

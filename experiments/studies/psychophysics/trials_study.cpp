@@ -56,10 +56,9 @@ void take_planned(const AnalysisRequest& request, trials::TrialsPlan& plan,
         "leave it out");
   }
   if (!request.planned.empty()) {
-    analysis::Covariate covariate = std::move(plan.plan.covariate);
-    plan.plan = analysis::parse_analysis_plan(request.planned, "", "--planned");
-    plan.plan.covariate = std::move(covariate);
-    std::ranges::transform(plan.plan.tests, plan.plan.tests.begin(), trials::with_short_numbers);
+    auto tests = analysis::parse_analysis_plan(request.planned, "", "--planned").tests;
+    std::ranges::transform(tests, tests.begin(), trials::with_short_numbers);
+    plan.plan = analysis::with_tests(std::move(plan.plan), std::move(tests));
     remarks.emplace_back("The planned tests were given to analyze, not stated in the definition.");
   }
 }
