@@ -160,11 +160,15 @@ std::optional<double> DistanceField::linear_at(const Eigen::Vector3d& p_B) const
   double sum = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Eigen::Array3i up(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+    const double weight = (up == 1).select(share, 1.0 - share).prod();
+    if (weight == 0.0) {
+      continue;
+    }
     const auto distance = this->at((low + up).matrix());
     if (!distance) {
       return std::nullopt;
     }
-    sum += *distance * (up == 1).select(share, 1.0 - share).prod();
+    sum += *distance * weight;
   }
   return sum;
 }

@@ -28,7 +28,7 @@ class DistanceField {
   double reach() const noexcept { return reach_; }        // [m]
   /// [m]; nothing beyond the reach or outside the grid.
   std::optional<double> at(const Voxel& voxel) const noexcept;
-  /// At a place, linear between the centres of voxels; nothing if one of the eight has none.
+  /// At a place, linear between the centres of voxels; nothing if one of those around it has none.
   /// @param p_B  in the model's frame [m]
   std::optional<double> linear_at(const Eigen::Vector3d& p_B) const noexcept;
 

@@ -81,7 +81,10 @@ float to_curve(const WatchedNerve& nerve, const Eigen::Vector3d& p_B) noexcept {
 
 NerveDistances::NerveDistances(const bone::BoneModel& model,
                                const std::vector<WatchedNerve>& nerves)
-    : spacing_(model.grid.spacing), nerves_(nerves) {
+    : low_(model.grid.centre(0, 0, 0)),
+      high_(model.grid.centre(model.grid.last())),
+      spacing_(model.grid.spacing),
+      nerves_(nerves) {
   for (const WatchedNerve& nerve : nerves_) {
     fields_.emplace_back();
     if (!nerve.curve.empty()) {
@@ -93,11 +96,19 @@ NerveDistances::NerveDistances(const bone::BoneModel& model,
   }
 }
 
-/// The nerve's surface is half a voxel before the centre of its outermost one.
+/// The nerve's surface is half a voxel before the centre of its outermost one. From outside of the
+/// bone's volume the way into it comes on top.
 float NerveDistances::to_structure(const bone::DistanceField& field,
                                    const Eigen::Vector3d& p_B) const noexcept {
-  const std::optional<double> distance = field.linear_at(p_B);
-  return distance ? static_cast<float>(*distance - 0.5 * spacing_) : kFar;
+  if (!p_B.allFinite()) {
+    return kFar;
+  }
+  const Eigen::Vector3d inside = p_B.cwiseMax(low_).cwiseMin(high_);
+  const double way = (p_B - inside).norm();
+  const std::optional<double> distance = field.linear_at(inside);
+  return distance && way + *distance <= kReach
+             ? static_cast<float>(way + *distance - 0.5 * spacing_)
+             : kFar;
 }
 
 NerveDistances::Distances NerveDistances::at(const Eigen::Vector3d& p_B) const noexcept {

@@ -30,7 +30,8 @@ class NerveDistances {
  private:
   float to_structure(const bone::DistanceField& field, const Eigen::Vector3d& p_B) const noexcept;
 
-  double spacing_;  // of the bone's voxels [m]
+  Eigen::Vector3d low_, high_;  // centres of the outermost voxels [m]
+  double spacing_;              // of the bone's voxels [m]
   std::vector<WatchedNerve> nerves_;
   std::vector<std::optional<bone::DistanceField>> fields_;  // by nerve; none of a curve
 };

@@ -39,8 +39,8 @@ Eigen::AlignedBox3i box_of(const BoneModel& model, std::uint8_t label) {
   return box;
 }
 
-/// The part of a bone around a label: 1 where it is, else 2. Beyond its grid a bone goes on as at
-/// its border.
+/// The part of a bone around a label: 1 where it is, else 2. Beyond the bone's grid it is nowhere:
+/// a tool may come from there, through air.
 BoneModel marked_part(const BoneModel& model, std::uint8_t label, double reach) {
   const geometry::VoxelGrid& grid = model.grid;
   const int beside = static_cast<int>(std::ceil(reach / grid.spacing)) + kBeside;
@@ -57,8 +57,10 @@ BoneModel marked_part(const BoneModel& model, std::uint8_t label, double reach) 
   for (int k = 0; k < size.z(); ++k) {
     for (int j = 0; j < size.y(); ++j) {
       for (int i = 0; i < size.x(); ++i) {
-        const Voxel v = (low + Voxel(i, j, k)).cwiseMax(0).cwiseMin(last);
-        part.labels.push_back(model.labels[grid.index(v)] == label ? 1 : 2);
+        const Voxel v = low + Voxel(i, j, k);
+        const bool there = (v.array() >= 0).all() && (v.array() <= last.array()).all() &&
+                           model.labels[grid.index(v)] == label;
+        part.labels.push_back(there ? 1 : 2);
       }
     }
   }

@@ -148,6 +148,8 @@ TEST(NerveDistancesTest, AgreeWithGeometry) {
   EXPECT_NEAR(static_cast<double>(distances.at({5e-3, 5e-3, 8e-3})[1]), 2e-3, 1e-8);
   EXPECT_NEAR(static_cast<double>(distances.at({0.0, 5e-3, 5e-3})[1]), 1e-3, 1e-8);
   EXPECT_NEAR(static_cast<double>(distances.at({11e-3, 13e-3, 5e-3})[1]), 4e-3, 1e-8);
+  const double before_the_volume = static_cast<double>(distances.at({10e-3, 7.5e-3, 15e-3})[0]);
+  EXPECT_NEAR(before_the_volume, 7.25e-3, 0.13e-3);
   EXPECT_EQ(distances.at({10e-3, 7.5e-3, 200e-3})[0], NerveDistances::kFar);
   EXPECT_EQ(distances.at({std::nan(""), 0.0, 0.0})[0], NerveDistances::kFar);
 }

@@ -225,6 +225,30 @@ TEST(SoftTissueTest, TheGradientOfASurfaceHasNoSteps) {
   }
 }
 
+/// Volumes are cropped, and tools come from outside of them.
+TEST(SoftTissueTest, AStructureEndsWhereTheVolumeDoes) {
+  BoneModel model = layer();
+  model.grid.size[2] = 10;  // nothing is over it
+  model.labels.resize(61 * 61 * 10);
+  const SurfaceDepth depth(model, 2, kRadius);
+  for (const double height : {0.5e-3, 1e-3, 2e-3, 3e-3}) {
+    SurfaceDepth::LocalTissue here{};
+    ASSERT_TRUE(depth.at(kMiddle + Vector3d(0.0, 0.0, kTop + height), here)) << height;
+    EXPECT_NEAR(here.distance, height, 0.15 * kEdge);
+    EXPECT_NEAR(here.gradient.z(), 1.0, 1e-3);
+  }
+  const SoftTissueParameters one[] = {dura(3.0)};
+  SoftTissue soft(model, one, kRadius);
+  Vector3d before = Vector3d::Zero();
+  for (int i = 0; i <= 400; ++i) {
+    const double height = 20e-3 - 18e-3 * i / 400;
+    const Vector3d force = soft.tick(kMiddle + Vector3d(0, 0, kTop + height), kRadius, false);
+    ASSERT_LT((force - before).norm(), 1.1 * 400.0 * 18e-3 / 400) << height;
+    before = force;
+  }
+  EXPECT_GT(before.z(), 0.3);
+}
+
 TEST(SoftTissueTest, AToolThatIsTakenInHandInItIsNotFeltBeforeItHasLeft) {
   const SoftTissueParameters one[] = {dura(3.0)};
   SoftTissue soft(layer(), one, kRadius);
