@@ -29,14 +29,19 @@ FragmentMeter::FragmentMeter(std::shared_ptr<const bone::BoneModel> bone,
     : bone_(std::move(bone)), pose_WB_(pose_WB), plan_(plan) {
   const std::vector<bool> teeth = teeth_labels(*bone_);
   const geometry::VoxelGrid& grid = bone_->grid;
+  std::ptrdiff_t more = 0;  // voxels beyond the cut than on its other side
   geometry::visit_voxels(grid, [&](const bone::Voxel& voxel, std::size_t at) {
-    if (teeth[bone_->labels[at]]) {
-      const Vector3d place = pose_WB_ * grid.centre(voxel);
-      if ((place - plan_.point).dot(plan_.normal) > 0.0) {
-        teeth_.push_back(place);
-      }
+    if (bone_->labels[at] == 0) {
+      return;
+    }
+    const Vector3d place = pose_WB_ * grid.centre(voxel);
+    const bool beyond = (place - plan_.point).dot(plan_.normal) > 0.0;
+    more += beyond ? 1 : -1;
+    if (beyond && teeth[bone_->labels[at]]) {
+      teeth_.push_back(place);
     }
   });
+  stays_ = more > 0;
 }
 
 void FragmentMeter::add(const record::PieceRow& row) {
@@ -63,7 +68,8 @@ FragmentFit FragmentMeter::fit() const {
   for (const auto& [hole, screw] : screws_) {
     fit.purchase += screw.purchase;
     fit.screws += screw.purchase >= kHoldingPurchase ? 1 : 0;
-    fit.screws_in_bone += screw.purchase >= kHoldingPurchase && screw.piece == 0 ? 1 : 0;
+    fit.screws_in_bone +=
+        screw.purchase >= kHoldingPurchase && (screw.piece == 0) != stays_ ? 1 : 0;
   }
   const auto largest = std::max_element(
       pieces_.begin(), pieces_.end(),
@@ -72,7 +78,8 @@ FragmentFit FragmentMeter::fit() const {
     return fit;
   }
   fit.came_off = true;
-  const Eigen::Isometry3d& motion = largest->second.motion;
+  const Eigen::Isometry3d& moved = largest->second.motion;
+  const Eigen::Isometry3d motion = stays_ ? moved.inverse() : moved;
   const Eigen::Isometry3d planned = plan_.motion();
   const Vector3d error = motion * plan_.point - planned * plan_.point;
   fit.gap = error.dot(plan_.normal);

@@ -36,7 +36,9 @@ struct FragmentFit {
   bool operator==(const FragmentFit&) const = default;
 };
 
-/// Meter that goes along with an osteotomy. One thread, not the servo thread.
+/// Meter that goes along with an osteotomy. The larger side of a cut stays in its holder: where
+/// that is the planned fragment, its motion is the inverse of that of the side which came off. One
+/// thread, not the servo thread.
 class FragmentMeter {
  public:
   FragmentMeter(std::shared_ptr<const bone::BoneModel> bone, const Eigen::Isometry3d& pose_WB,
@@ -59,6 +61,7 @@ class FragmentMeter {
   Eigen::Isometry3d pose_WB_;
   subject::FragmentPlan plan_;
   std::vector<Eigen::Vector3d> teeth_;  // beyond the cut, in W [m]
+  bool stays_{false};                   // the planned fragment is the larger side
   std::map<std::int32_t, Piece> pieces_;
   std::map<std::pair<std::int32_t, std::int32_t>, record::ScrewRow> screws_;  // by plate and hole
   double off_squares_{0.0};                                                   // [m2]

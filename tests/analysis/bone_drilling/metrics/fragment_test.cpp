@@ -85,6 +85,21 @@ TEST_F(FragmentTest, GapStepAndTurnAreThoseOfTheError) {
   EXPECT_LT(fit.bite_mean.value(), most);
 }
 
+/// The larger side stays in the holder, so that the other one comes off and is moved.
+TEST_F(FragmentTest, AFragmentThatIsTheLargerSideIsJudgedByTheOthersMotion) {
+  plan_.point.x() -= 4e-3;
+  FragmentMeter meter(bone_, Isometry3d::Identity(), plan_);
+  meter.add(row_of(1, plan_.motion().inverse(), 500));
+  const FragmentFit fit = meter.fit();
+  EXPECT_NEAR(fit.gap, 0.0, 1e-9);
+  EXPECT_NEAR(fit.step, 0.0, 1e-9);
+  EXPECT_NEAR(fit.turn, 0.0, 1e-7);
+  FragmentMeter wrong(bone_, Isometry3d::Identity(), plan_);
+  wrong.add(row_of(1, plan_.motion(), 500));
+  EXPECT_GT(wrong.fit().step + std::abs(wrong.fit().gap), 2e-3)
+      << "moved as if it were the fragment";
+}
+
 TEST_F(FragmentTest, WithoutAPieceOnlyTheCutIsKnown) {
   meter_.remove({9, 3, 3});   // 0.5 mm before the plane
   meter_.remove({12, 3, 3});  // 2.5 mm behind it
