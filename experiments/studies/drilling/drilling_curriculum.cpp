@@ -8,6 +8,7 @@
 #include <set>
 
 #include "analysis/bone_drilling/feedback/curriculum_page.h"
+#include "analysis/bone_drilling/metrics/metrics.h"
 #include "analysis/bone_drilling/metrics/quantities.h"
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -165,8 +166,15 @@ void check_criteria(const protocols::BoneDefinition& d) {
   for (const bone::CurriculumCase& each : d.curriculum->cases) {
     const auto source =
         static_cast<std::size_t>(std::ranges::find(d.sources, each.bone) - d.sources.begin());
-    const std::vector<std::string> known =
+    std::vector<std::string> known =
         drilling::quantity_names_on(*d.bones.at(source), d.osteotomy.has_value());
+    std::erase(known, drilling::kRegionMetric);  // one procedure is compared with nothing
+    if (!d.cavity) {
+      for (const char* of_a_plan :
+           {"cavity_removed_percent", "beyond_plan_mm3", "economy_mm3_per_m"}) {
+        std::erase(known, of_a_plan);
+      }
+    }
     for (const bone::Criterion& criterion : each.pass) {
       check_criterion(criterion, known, fmt::format("{}: case \"{}\"", d.file_name, each.name));
     }
