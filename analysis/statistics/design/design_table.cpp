@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "analysis/statistics/base/descriptive.h"
+#include "core/base/error.h"
 
 namespace haptrial::analysis {
 namespace {
@@ -77,6 +78,18 @@ void add_cells(DesignTable& table) {
     }
     table.cells.push_back(std::move(levels));
     table.names.push_back(std::move(name));
+  }
+}
+
+/// "a" with "b, c" and "a, b" with "c" are both "a, b, c", and tests go by such names.
+void refuse_equal_names(const DesignTable& table) {
+  std::set<std::string> names;
+  for (const std::string& name : table.names) {
+    if (!names.insert(name).second) {
+      throw InputError(
+          "two conditions are called '" + name +
+          "', the names of their levels one after the other; name levels without ', '");
+    }
   }
 }
 
@@ -194,6 +207,7 @@ DesignTable design_table(std::span<const Observation> observations,
     }
   }
   drop_empty_cells(table);
+  refuse_equal_names(table);
   return table;
 }
 

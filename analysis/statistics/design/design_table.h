@@ -45,7 +45,7 @@ struct DesignTable {
 
 /// @param factors  names, as many as every observation has levels.
 /// @param first    levels in the order wanted; others follow, numbers by value before names by
-///   letters. Only levels that occur stay.
+///   letters. Only levels that occur stay. @throws InputError where two conditions have one name
 DesignTable design_table(std::span<const Observation> observations,
                          const std::vector<std::string>& factors,
                          const std::vector<std::string>& first = {});

@@ -59,6 +59,12 @@ void expect_effect(const Defined<EffectTest>& found, const std::string& factor, 
   EXPECT_NEAR(found->p, p, 1e-10);
 }
 
+TEST(DesignTable, TwoConditionsOfOneNameAreRefused) {
+  const std::vector<Observation> clash{{"P1", {"a", "b, c"}, 1.0}, {"P1", {"a, b", "c"}, 2.0}};
+  const std::vector<std::string> factors{"f", "g"};
+  EXPECT_THROW(design_table(clash, factors), InputError);
+}
+
 TEST(DesignTable, FindsWhatVariesWithinAndBetween) {
   Made made("table");
   for (int i = 0; i < 3; ++i) {
