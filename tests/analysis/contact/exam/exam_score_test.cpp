@@ -107,7 +107,7 @@ TEST(ExamTest, EveryToolAndItsBodyHaveAnInside) {
     for (const geometry::Mesh& mesh : {one.tool, one.body}) {
       const contact::FeltBody felt(mesh);
       EXPECT_TRUE(felt.closed) << one.name;
-      EXPECT_TRUE(felt.outwards) << one.name;
+      EXPECT_EQ(felt.facing, geometry::Facing::kOutwards) << one.name;
     }
   }
 }
@@ -188,7 +188,7 @@ TEST(ExamTest, EveryBodyHasAnInside) {
   for (const ExamBody& body : exam_bodies()) {
     const contact::FeltBody felt(mesh_of(body.body, 2));
     EXPECT_TRUE(felt.closed) << body.name;
-    EXPECT_TRUE(felt.outwards) << body.name;
+    EXPECT_EQ(felt.facing, geometry::Facing::kOutwards) << body.name;
   }
 }
 
