@@ -21,7 +21,7 @@ constexpr double kSwing = 2.0;       // peak to peak [N]
 constexpr double kGap = 1.0 / 30.0;  // between the turns of 15 Hz [s]
 constexpr double kLasting = 0.2;     // [s]
 
-/// What dies away does so by itself, as after a knock.
+/// A swing that dies away does so by itself, as after a knock.
 bool stays(const SwingCounter::Alternation& train) noexcept {
   constexpr double kDying = 0.96;  // of the swing before
   return train.turned && train.swing >= kDying * train.swing_before;

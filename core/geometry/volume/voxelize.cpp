@@ -232,8 +232,8 @@ bool is_small(const BoundaryCone& cone) {
   return cone.fans.size() <= kFewFans && cone.mesh.triangles.size() <= kFewTriangles;
 }
 
-void fill_oriented(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
-                   const WorkReport& report) {
+void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
+                     const WorkReport& report) {
   BoundaryCone cone = boundary_cone(mesh);
   if (!is_small(cone)) {  // perhaps only because neighbours do not share their vertices
     Mesh welded = mesh;
@@ -260,21 +260,6 @@ void fill_oriented(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
   const GridCrossings crossings(closed, solid.grid, 0, report);
   fill_rows(crossings, solid, [](int, int windings) { return windings >= 1; });
   NearCone(cone, crossings, solid).run(report);
-}
-
-/// Where a part is open, the sign of the winding number tells inside from outside, and it is that
-/// of the faces: they are turned first, as those of closed meshes may look either way.
-void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
-                     const WorkReport& report) {
-  if (!winds_whole(mesh)) {
-    Mesh right = mesh;
-    weld(right, 0.0);
-    if (orient(right) > 0) {
-      fill_oriented(right, nullptr, solid, report);
-      return;
-    }
-  }
-  fill_oriented(mesh, hierarchy, solid, report);
 }
 
 /// Marks the outside voxels of a row that touch an inside one in it or in a row beside it.

@@ -300,31 +300,6 @@ TEST(VoxelizeTest, OverlappingClosedPartsAreTheirUnion) {
   EXPECT_NEAR(volume_within(cubes, 150), both, 1e-9) << "all faces look inwards";
 }
 
-TEST(VoxelizeTest, FacesOfOpenPartsMayLookEitherWay) {
-  const auto turned = [](Mesh mesh) {
-    for (Triangle& triangle : mesh.triangles) {
-      std::swap(triangle[0], triangle[1]);
-    }
-    return mesh;
-  };
-  Mesh open = make_sphere(1.0, 8);
-  open.triangles.resize(open.triangles.size() - 30);
-  const double outwards = volume_within(open, 60);
-  EXPECT_GT(outwards, 3.5);
-  EXPECT_NEAR(volume_within(turned(open), 60), outwards, 0.02);
-  Mesh beside = turned(cube());  // closed, beside an open one
-  for (Eigen::Vector3d& vertex : beside.vertices) {
-    vertex.x() += 4.0;
-  }
-  const auto offset = static_cast<std::int32_t>(open.vertices.size());
-  Mesh both = open;
-  both.vertices.insert(both.vertices.end(), beside.vertices.begin(), beside.vertices.end());
-  for (const Triangle& t : beside.triangles) {
-    both.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  }
-  EXPECT_NEAR(volume_within(both, 120), outwards + 8.0, 0.3);
-}
-
 TEST(VoxelizeTest, ACavityIsAShellThatLooksInwards) {
   Mesh hollow = cube();
   for (const Mesh inner = cube(); const Eigen::Vector3d& vertex : inner.vertices) {
