@@ -366,17 +366,18 @@ TEST_F(EvaluateCommandTest, SessionsThatHeardOtherRecordingsAreToldApart) {
   std::string study = kBallStudy;
   study.replace(study.find("mesh = \"ball.obj\""), 17,
                 "shape = \"box\"\nsize = [0.02, 0.02, 0.02]");
+  study.replace(study.find("participants = 1"), 16, "participants = 2");
   study += "[sounds.beep]\ntype = \"file\"\nfile = \"beep.wav\"\n";
   test::write_text(folder_ / "beep.toml", study);
   const std::string first = record_beep(0.1F);
-  ASSERT_EQ(run("haptrial dry-run beep.toml --out study").status, 0);
+  ASSERT_EQ(run("haptrial dry-run beep.toml --subjects 1 --out study").status, 0);
   const std::string second = record_beep(0.2F);
   const auto refused =
       run("haptrial run beep.toml --subject S01 --device replay:study/S01.h5 --out again");
   EXPECT_EQ(refused.status, 2);
   EXPECT_THAT(refused.errors, HasSubstr("was recorded with another file of sounds.beep"));
-  ASSERT_EQ(run("haptrial dry-run beep.toml --out other").status, 0);
-  fs::copy_file(folder_ / "other/S01.h5", folder_ / "study/S02.h5");
+  ASSERT_EQ(run("haptrial dry-run beep.toml --subjects 2 --out other").status, 0);
+  fs::copy_file(folder_ / "other/S02.h5", folder_ / "study/S02.h5");
   EXPECT_THAT(run("haptrial analyze study").output,
               testing::AllOf(HasSubstr("sounds.beep was not the same file in all sessions"),
                              HasSubstr(first + " in S01.h5"), HasSubstr(second + " in S02.h5")));
