@@ -132,7 +132,7 @@ struct Definition {
   /// gives, so that every other one is every other one of the course.
   GivenPlace in_course(int session, GivenPlace place) const;
   /// Trials of a session that count for in_course(); 0: a session alternates for itself.
-  virtual int trials_in(int session) const { return static_cast<void>(session), 0; }
+  virtual int trials_in(int /*session*/) const { return 0; }
   /// A session drives these parts of devices, 1 to kMostDevices of them; the first is a tip.
   virtual std::vector<DeviceArm> arms() const { return {{envelope}}; }
   int devices() const { return static_cast<int>(arms().size()); }  // these parts

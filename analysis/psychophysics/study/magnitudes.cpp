@@ -44,6 +44,14 @@ void leave_out_one_level(MagnitudeCondition& one) {
   });
 }
 
+Defined<PowerLaw> law_of(const MagnitudeCondition& one) {
+  if (one.trials.empty()) {
+    return Undefined{one.one_level.empty() ? "no answer is above 0"
+                                           : "nobody has answers at several levels"};
+  }
+  return power_law(one.trials);
+}
+
 }  // namespace
 
 std::vector<MagnitudeCondition> magnitudes(const TrialsData& data, const TrialsPlan& plan) {
@@ -69,11 +77,7 @@ std::vector<MagnitudeCondition> magnitudes(const TrialsData& data, const TrialsP
     leave_out_one_level(own);
     own.levels = levels;
     own.condition = fmt::format("{}", fmt::join(levels, ", "));
-    own.law = own.trials.empty()
-                  ? Defined<PowerLaw>(Undefined{own.one_level.empty() ? "no answer is above 0"
-                                                                      : "nobody has answers at "
-                                                                        "several levels"})
-                  : power_law(own.trials);
+    own.law = law_of(own);
     result.push_back(std::move(own));
   }
   return result;

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/psychophysics/fit/series.h"
+#include "analysis/psychophysics/study/magnitudes.h"
 #include "core/base/error.h"
 #include "core/psychometric/procedure/staircase.h"
 #include "tests/analysis/psychophysics/simulated_trials.h"
@@ -218,6 +220,25 @@ TEST(TrialsStudyTest, ExponentsAreThoseOfThePeople) {
     EXPECT_GT(*one.law->high, test::kTypicalExponent);
   }
   EXPECT_THAT(of(result, "exponent").table.cells, SizeIs(2));
+}
+
+TEST(TrialsStudyTest, WhoAnsweredAtOneLevelTakesNoExponentFromOthers) {
+  SimulatedTrials study;
+  study.task = SimulatedTask::kMagnitude;
+  study.participants = 6;
+  study.trials = 50;
+  TrialsData data = test::simulated_trials(study);
+  const TrialsPlan plan = test::plan_of(study);
+  const std::string who = data.sessions.front().participant;
+  const double level = level_of(data.trials.front(), plan);
+  std::erase_if(data.trials, [&](const StudyTrial& trial) {
+    return data.session_of(trial).participant == who && level_of(trial, plan) != level;
+  });
+  for (const MagnitudeCondition& one : magnitudes(data, plan)) {
+    ASSERT_TRUE(one.law) << one.law.because();
+    EXPECT_THAT(one.law->exponents, SizeIs(5));
+    EXPECT_TRUE(one.one_level.empty() || one.one_level == std::vector{who});
+  }
 }
 
 TEST(TrialsStudyTest, ATrackIsReplayedAsItRan) {
