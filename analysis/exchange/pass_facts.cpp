@@ -37,7 +37,7 @@ class Collector {
   void add(std::int32_t pass, const ColumnDoc& column, double number) {
     add(pass, column, std::isfinite(number) ? fmt::format("{}", number) : std::string());
   }
-  /// @param behind  the name of a column that is there already as another
+  /// @param behind  goes behind a name that another column has already, "_answer"
   void begin(const char* behind) { behind_ = behind; }
   PassFacts take() { return std::move(facts_); }
 

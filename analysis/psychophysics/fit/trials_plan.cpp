@@ -530,7 +530,8 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
                 check_by(table, defaults, plan);
               })
       .otherwise(
-          "all factors but the level as written; of detection, identification, reaching, paired and times over a "
+          "all factors but the level as written; of detection, identification, reaching, paired "
+          "and times over a "
           "level none")
       .derive([](P& plan) {
         if (plan.kind == AnalysisKind::kPaired) {
