@@ -82,6 +82,7 @@ Vector3d CoupledSide::felt(const OwnState& own, double dt) noexcept {
   last_place_ = own.tool.position;
   stepped_ = true;
   played_.setZero();
+  played_stimulus_.setZero();
   const tutoring::Lead lead{1.0 - own.lead, own.felt_back};
   const double share =  // of the coupling that is on
       strength_ * std::clamp(std::max(lead.partner, lead.felt_back), 0.0, 1.0);
@@ -93,6 +94,8 @@ Vector3d CoupledSide::felt(const OwnState& own, double dt) noexcept {
       strength_ * tutoring::tutoring_force(p_.gains, lead, partner_, own.tool, Vector3d::Zero());
   const Vector3d wanted = share * tutoring::coupling_force(p_.gains, partner_.tool, own.tool);
   played_ = whole - wanted;
+  played_stimulus_ =
+      strength_ * std::clamp(lead.partner, 0.0, 1.0) * p_.gains.force_share * used_.stimulus;
   return p_.passivity == Passivity::kNone
              ? whole
              : played_ + tank_.limit(wanted, moved, own.tool.velocity, energy_heard_, dt, share);
@@ -119,6 +122,7 @@ std::optional<TickMessage> CoupledSide::told(const OwnState& own, std::int64_t n
   m.position = own.tool.position;
   m.velocity = own.tool.velocity;
   m.force = p_.sparse ? deadband_.sent().force : own.force;
+  m.stimulus = own.stimulus;
   m.energy = tank_.sent();
   m.lead = own.lead;
   m.world = own.world;

@@ -48,10 +48,11 @@ class CoupledSide {
   void hear(const TickMessage& message, std::int64_t now_ns) noexcept;
 
   struct OwnState {
-    PointState tool;                                 // in W
-    Eigen::Vector3d force{Eigen::Vector3d::Zero()};  // of the own world on the tool, in W [N]
-    double lead{0.0};                                // own authority, 0 to 1
-    double felt_back{0.0};                           // of the coupling, where this side leads
+    PointState tool;                                    // in W
+    Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // of the own world on the tool, in W [N]
+    Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};  // of that force (ForceIntent::stimulus) [N]
+    double lead{0.0};                                   // own authority, 0 to 1
+    double felt_back{0.0};                              // of the coupling, where this side leads
     std::uint32_t buttons{0};
     std::uint32_t flags{0};
     std::uint64_t world{0};
@@ -69,6 +70,9 @@ class CoupledSide {
   /// Sets the force of the partner's world and the coupling that acts until the next tick, if
   /// something after step() changed it.
   void acts(const Eigen::Vector3d& force) noexcept { tank_.acts(force - played_); }
+
+  /// The part of the force that is a stimulus of the partner's world [N].
+  const Eigen::Vector3d& played_stimulus() const noexcept { return played_stimulus_; }
 
   /// How much of the own world the hand feels, 0 to 1: the own lead where there is a link. A hand
   /// that its partner has left has nothing else to rest on, so that the own world is back within 50
@@ -114,6 +118,7 @@ class CoupledSide {
   double catching_up_{0.0};     // the rest of that time [s]
   Eigen::Vector3d last_place_;  // of the own tool
   Eigen::Vector3d played_{Eigen::Vector3d::Zero()};  // of the partner's world, in this tick [N]
+  Eigen::Vector3d played_stimulus_{Eigen::Vector3d::Zero()};  // of that [N]
   bool stepped_{false};
   bool linked_{false};
   double strength_{0.0};  // of the ramp, 0 to 1

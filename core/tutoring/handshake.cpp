@@ -9,7 +9,7 @@
 namespace haptrial::tutoring {
 namespace {
 
-constexpr std::string_view kVersion = "haptrial link 02";
+constexpr std::string_view kVersion = "haptrial link 03";
 constexpr std::size_t kTermBytes = 34;
 constexpr std::size_t kProofBytes = 32;
 static_assert(kVersion.size() == 16 && kProofBytes == crypto_auth_BYTES);

@@ -16,7 +16,7 @@ void each_field(Message& m, Field field) {
   field(m.sent_ns);
   field(m.echo_ns);
   field(m.held_ns);
-  for (auto* vector : {&m.position, &m.velocity, &m.force}) {
+  for (auto* vector : {&m.position, &m.velocity, &m.force, &m.stimulus}) {
     for (int axis = 0; axis < 3; ++axis) {
       field((*vector)[axis]);
     }
@@ -47,7 +47,7 @@ constexpr std::uint32_t kKnownFlags = kEngaged | kStop | kFault | kClaim | kOver
 
 bool makes_sense(const TickMessage& m) noexcept {
   return m.position.allFinite() && m.velocity.allFinite() && m.force.allFinite() &&
-         std::isfinite(m.energy) && m.lead >= 0.0 && m.lead <= 1.0 &&
+         m.stimulus.allFinite() && std::isfinite(m.energy) && m.lead >= 0.0 && m.lead <= 1.0 &&
          (m.flags & ~kKnownFlags) == 0 && m.turn.phase <= TurnPhase::kBroken &&
          m.turn.last_done <= 1 && m.stream.size <= StreamPart::kMost;
 }

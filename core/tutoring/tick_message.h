@@ -76,6 +76,7 @@ struct TickMessage {
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};  // of the tool, in W [m]
   Eigen::Vector3d velocity{Eigen::Vector3d::Zero()};  // [m/s]
   Eigen::Vector3d force{Eigen::Vector3d::Zero()};     // of its world on its tool, in W [N]
+  Eigen::Vector3d stimulus{Eigen::Vector3d::Zero()};  // of that force (ForceIntent::stimulus) [N]
   double energy{0.0};                                 // EnergyTank::sent() [J]
   double lead{0.0};                                   // the sender's authority, 0 to 1
   std::uint64_t world{0};                             // checksum of what both work on; 0: none
@@ -97,7 +98,7 @@ enum TickFlag : std::uint32_t {
 };
 
 /// Length of a message without a stream, and with one.
-inline constexpr std::size_t kTickBytes = 4 * 8 + 3 * 3 * 8 + 3 * 8 + 2 * 4 + 3 * 4 + 2;
+inline constexpr std::size_t kTickBytes = 4 * 8 + 4 * 3 * 8 + 3 * 8 + 2 * 4 + 3 * 4 + 2;
 inline constexpr std::size_t kStreamTickBytes =
     kTickBytes + 2 * 8 + StreamPart::kBeyond / 8 + 2 + StreamPart::kMost;
 using TickBytes = Packet<std::byte, kStreamTickBytes>;

@@ -133,9 +133,11 @@ std::uint32_t LinkedHand::flags() const noexcept {
 }
 
 void LinkedHand::step(const PointState& tool, const Eigen::Vector3d& own_force,
-                      std::uint32_t buttons, double dt) noexcept {
+                      const Eigen::Vector3d& own_stimulus, std::uint32_t buttons,
+                      double dt) noexcept {
   own_.tool = tool;
   own_.force = own_force;
+  own_.stimulus = own_stimulus;
   own_.buttons = buttons;
   own_.flags = flags();
   own_.turn = turns_.own();
@@ -157,20 +159,24 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   runs_ = first_phase && out.stage == record::Stage::kRun;
   const bool partner_runs = (side_.newest().flags & TickFlag::kEngaged) != 0;
   share_lead(runs_ && partner_runs && turns_.together() && side_.linked(), dt);
-  step(reading.tool, out.force, reading.buttons, dt);
-  keep_within_envelope(out);
+  step(reading.tool, out.force, out.intent.stimulus, reading.buttons, dt);
+  const double passed = keep_within_envelope(out);
   // The tank watches the force of the link; the own world's part as it always is. A share that
   // changes puts energy into the own world's springs, or takes it out.
   const double share = side_.own_share();
   out.intent.push = share * out.intent.push + coupling_;
   out.intent.added = share * out.intent.added + (share - last_share_) * out.intent.stored;
   out.intent.stored *= share;
+  // What begins and ends counts as much as it is felt: the envelope takes it for part of the force.
+  out.intent.stimulus = passed * (share * out.intent.stimulus + side_.played_stimulus());
+  out.intent.ended *= last_share_;
   last_share_ = share;
 }
 
 /// A partner far away pulls hard, which is no fault of the own protocol. Without coupling the own
 /// force stays as it is.
-void LinkedHand::keep_within_envelope(PassOutput& out) noexcept {
+/// @returns the share of the force that passes
+double LinkedHand::keep_within_envelope(PassOutput& out) noexcept {
   const Eigen::Vector3d own_part = side_.own_share() * out.force;
   const Eigen::Vector3d wanted = own_part + coupling_;
   out.force = wanted;
@@ -178,7 +184,9 @@ void LinkedHand::keep_within_envelope(PassOutput& out) noexcept {
     out.force = control::saturate(wanted, p_.options.most_force);
     out.saturated = true;
     coupling_ = out.force - own_part;
+    return p_.options.most_force / wanted.norm();
   }
+  return 1.0;
 }
 
 void LinkedHand::observe(const stimulus::Shown& /*shown*/, const stimulus::Forces& forces,
@@ -202,7 +210,8 @@ void LinkedHand::record(std::uint64_t sequence, const Readings& readings,
     }
     coupled_ = tutoring::Handover(p_.options.ramp);
     share_lead(false, dt_);
-    step(readings[0].tool, Eigen::Vector3d::Zero(), readings[0].buttons, dt_);
+    const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+    step(readings[0].tool, none, none, readings[0].buttons, dt_);
     coupling_.setZero();
     last_share_ = 1.0;
   }

@@ -103,11 +103,11 @@ class LinkedHand final : public TickLog, public stimulus::Observer, private tuto
   void hear(const tutoring::Arrived& arrived) noexcept override;
   void listen() noexcept;
   void heed_partner() noexcept;
-  void keep_within_envelope(PassOutput& out) noexcept;
+  double keep_within_envelope(PassOutput& out) noexcept;
   bool claims() const noexcept { return lead_asked_.load(std::memory_order_relaxed) == 1; }
   void share_lead(bool engaged, double dt) noexcept;
-  void step(const PointState& tool, const Eigen::Vector3d& own_force, std::uint32_t buttons,
-            double dt) noexcept;
+  void step(const PointState& tool, const Eigen::Vector3d& own_force,
+            const Eigen::Vector3d& own_stimulus, std::uint32_t buttons, double dt) noexcept;
   void tell_state(double dt) noexcept;
   std::uint32_t flags() const noexcept;
   void keep_row(std::uint64_t sequence) noexcept;

@@ -162,7 +162,12 @@ void TutoredPass::lead(PassOutput& out, const device::DeviceReading& reading) no
   out.intent.drive = tutor.tool.velocity;
   out.intent.stored =
       0.5 * share * reading.shares.stiffness * gains.stiffness * stretch.squaredNorm();
-  out.intent.stimulus = share * gains.force_share * tutor.force;
+  // The own world's counts as much as it is felt, what is recorded was meant to be felt.
+  const double passed = out.saturated && !wanted.isZero() ? out.force.norm() / wanted.norm() : 1.0;
+  out.intent.stimulus =
+      passed * ((1.0 - share) * out.intent.stimulus + share * gains.force_share * tutor.force);
+  out.intent.ended *= 1.0 - share;
+  out.intent.added = 0.0;  // the own world's springs push
   log_->push({sequence_, playback_.time(), share, tutor.tool.position, tutor.force,
               out.force - (1.0 - share) * own_force});
 }
