@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -88,6 +89,12 @@ struct CueSet {
   std::string device{"default"};  // ALSA's name of the card
   std::vector<Actuator> actuators{};
   bool empty() const { return cues.empty() && !masking; }
+  /// Whether some of them are stimuli, without which a trial is another one: vibrations, and sounds
+  /// that follow from the trial.
+  bool has_stimuli() const {
+    return std::ranges::any_of(cues,
+                               [](const Cue& cue) { return cue.varies || !cue.actuator.empty(); });
+  }
 };
 
 /// The samples of a cue at CardPlayer::kRate.

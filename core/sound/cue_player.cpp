@@ -322,8 +322,10 @@ std::vector<StartedCue> CuePlayer::take_said() {
   return std::exchange(impl_->said, {});
 }
 
+bool CuePlayer::lost() const { return impl_->player.lost(); }
+
 std::string CuePlayer::trouble() const {
-  if (impl_->player.lost()) {
+  if (lost()) {
     return "the sound card was lost: nothing was played from then on";
   }
   const bool limited = std::ranges::any_of(

@@ -50,6 +50,8 @@ class CuePlayer {
   /// Texts that have begun.
   std::vector<StartedCue> take_said();
 
+  /// Whether the card is gone: nothing is played any more.
+  bool lost() const;
   /// Whether the limiter acted, the card ran out of samples or was lost, in a sentence; else empty.
   std::string trouble() const;
 

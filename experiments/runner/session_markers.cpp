@@ -71,7 +71,8 @@ void SessionMarkers::open_outputs(const SessionRequest& request, stream::LslOutl
       std::make_unique<markers::MarkerThread>(log_, options, meanings_, std::move(outputs), now_);
 }
 
-/// A session goes on without its sounds, and says so; it does not begin without its speech.
+/// A session goes on without its sounds, and says so; it does not begin without its speech or its
+/// stimuli.
 void SessionMarkers::open_sound(const SessionRequest& request) {
   const sound::CueSet set =
       definition_.sounds() != nullptr ? *definition_.sounds() : sound::CueSet{{}, {}, speech_.card};
@@ -88,8 +89,10 @@ void SessionMarkers::open_sound(const SessionRequest& request) {
         set, derived_seed(request.seed, "participant " + request.subject), now_);
     player_->mask(set.masking && masked_.empty());
   } catch (const RunError& error) {
-    if (speech_.spoken) {
-      throw InputError(fmt::format("{}; display.spoken needs one", error.what()));
+    if (speech_.spoken || set.has_stimuli()) {
+      throw InputError(fmt::format("{}; {} one", error.what(),
+                                   speech_.spoken ? "display.spoken needs"
+                                                  : "vibrations, and sounds that vary, need"));
     }
     notice_ = fmt::format("{}; the session goes on without its sounds", error.what());
   }
@@ -290,6 +293,11 @@ std::vector<MarkerRow> SessionMarkers::take_rows(bool last) {
     return std::pair(a.pass, a.sequence) < std::pair(b.pass, b.sequence);
   });
   return rows;
+}
+
+bool SessionMarkers::lost_stimuli() const {
+  return player_ && player_->lost() && definition_.sounds() != nullptr &&
+         definition_.sounds()->has_stimuli();
 }
 
 std::vector<std::string> SessionMarkers::troubles() const {

@@ -28,8 +28,8 @@ class SessionMarkers {
   /// @param log     of the servo thread's onsets; outlives the markers
   /// @param outlet  null: no stream; outlives the markers
   /// @param now     the session's clock [ns], asked by several threads
-  /// @throws InputError if the definition names a serial line that cannot be opened, or is spoken
-  /// and there is no sound card
+  /// @throws InputError if the definition names a serial line that cannot be opened, or is spoken or
+  /// has stimuli that are sounds and there is no sound card
   SessionMarkers(const SessionRequest& request, markers::OnsetLog& log, stream::LslOutlet* outlet,
                  std::function<std::int64_t()> now);
   ~SessionMarkers();
@@ -56,6 +56,8 @@ class SessionMarkers {
 
   /// Ticks whose onsets the servo thread found no room for. Any thread.
   std::uint64_t dropped() const { return log_.dropped(); }
+  /// Whether the sound card is gone that gives stimuli, so that no trial may count.
+  bool lost_stimuli() const;
   /// Sentences on what went wrong so far: a lost serial line, sounds that were too loud.
   std::vector<std::string> troubles() const;
   /// How soon the markers had gone, a line each way.

@@ -8,6 +8,8 @@
 #include <span>
 #include <utility>
 
+#include "core/base/error.h"
+
 namespace haptrial::experiments {
 
 using protocols::AfterAbort;
@@ -132,6 +134,10 @@ bool TrialPresenter::run_pass(const PlannedTrial& trial, const record::Phase& ph
   p_.trials.close_pass(p_.record, number);
   keep_responses();
   p_.record.end_pass(result);
+  if (p_.record.markers().lost_stimuli()) {
+    throw RunError(
+        "the sound card was lost, which gives the stimuli; see to it, and go on with --resume");
+  }
   p_.notices.note_pass(result);
   if (aborted) {
     p_.controller.status().aborted_passes = ++p_.summary.aborted_passes;

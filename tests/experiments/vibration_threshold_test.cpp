@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "tests/experiments/command.h"
@@ -94,6 +95,19 @@ TEST_F(VibrationThresholdTest, AProcedureFindsThePlantedThreshold) {
   const std::size_t at = said.find(before);
   ASSERT_NE(at, std::string::npos) << said;
   EXPECT_NEAR(std::log10(std::stod(said.substr(at + before.size()))), std::log10(kThreshold), 0.08);
+}
+
+TEST_F(VibrationThresholdTest, ASessionDoesNotBeginWithoutTheCardThatGivesItsStimuli) {
+  std::string text = test::read_text(study("12.0"));
+  text.replace(text.find("\"null\""), 6, "\"hw:no-such-card\"");
+  test::write_text(folder_ / "study.toml", text);
+  const std::string out = (folder_ / "live").string();
+  const auto said = test::run_command("haptrial run " + (folder_ / "study.toml").string() +
+                                      " --subject S01 --device virtual --out " + out);
+  EXPECT_EQ(said.status, 2);
+  EXPECT_THAT(said.errors, HasSubstr("sound card 'hw:no-such-card'"));
+  EXPECT_THAT(said.errors, HasSubstr("vibrations, and sounds that vary, need one"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "live/S01.h5.partial"));
 }
 
 TEST_F(VibrationThresholdTest, MoreThanFullScaleAtAnEndOfTheRangeIsRefused) {
