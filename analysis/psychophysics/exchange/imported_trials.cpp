@@ -46,7 +46,9 @@ class TableRows {
 
   bool passes_filters(std::size_t row) const {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
-      if (table_.text(row, filters_[i]) != columns_.filters[i].value) {
+      const std::string_view text = table_.text(row, filters_[i]);
+      const auto& wanted = columns_.filters[i].value;
+      if (wanted ? !is_same(text, *wanted) : is_missing(text)) {
         return false;
       }
     }
@@ -122,6 +124,12 @@ class TableRows {
     const auto& roles = TrialColumns::roles();
     const auto at = std::ranges::find(roles, member, [](const auto& each) { return each.second; });
     return static_cast<std::size_t>(at - roles.begin());
+  }
+
+  /// 1.0 is 1: programs write it so where a column has gaps.
+  static bool is_same(std::string_view text, std::string_view wanted) {
+    const auto number = number_in(text), other = number_in(wanted);
+    return text == wanted || (number && other && *number == *other);
   }
 
   std::optional<std::size_t> place(Member member) const {
@@ -246,6 +254,18 @@ class TableRows {
   std::vector<std::size_t> factors_, filters_;
 };
 
+/// The loops of PsychoPy that a row was written in, "blocks and trials"; empty: none.
+std::string loops_around(const CsvTable& table, const std::vector<std::string>& loops,
+                         std::size_t row) {
+  std::vector<std::string> around;
+  for (const std::string& loop : loops) {
+    if (!is_missing(table.text(row, table.column(loop + std::string(kLoopNumber))))) {
+      around.push_back(loop);
+    }
+  }
+  return fmt::format("{}", fmt::join(around, " and "));
+}
+
 void read_table(const fs::path& file, ImportedStudy& study) {
   const std::string text = file_text(file);
   const CsvTable table = CsvTable::parse(text, file.string());
@@ -253,11 +273,13 @@ void read_table(const fs::path& file, ImportedStudy& study) {
   study.sources.push_back({file.filename().string(), sha256_of(text)});
   const TableRows rows(table, study.columns, file.stem().string());
   rows.check_numbers();
+  const std::vector<std::string> loops = loops_of(table);
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!rows.passes_filters(row) || !rows.is_trial(row)) {
       ++study.left_out;
       continue;
     }
+    ++study.loops[loops_around(table, loops, row)];
     ImportedTrial trial = rows.trial(row);
     trial.source = source;
     const bool answered = study.columns.answer.empty() ? trial.correct >= 0 : !trial.answer.empty();
@@ -301,6 +323,34 @@ void settle_factors(ImportedStudy& study) {
   }
 }
 
+/// Answers, or ratings, that are all numbers are spelled in one way, the shortest there is:
+/// programs write 1.0 for 1 where a column has gaps.
+void settle_numbers(ImportedStudy& study, std::string ImportedTrial::*member, const char* what) {
+  std::map<double, std::set<std::string>> spellings;
+  for (const ImportedTrial& trial : study.trials) {
+    const std::string& text = trial.*member;
+    const auto number = number_in(text);
+    if (!number && !text.empty()) {
+      return;
+    }
+    if (number) {
+      spellings[*number].insert(text);
+    }
+  }
+  for (ImportedTrial& trial : study.trials) {
+    if (const auto number = number_in(trial.*member)) {
+      trial.*member = *std::ranges::min_element(spellings.at(*number), {}, &std::string::size);
+    }
+  }
+  for (const auto& [number, texts] : spellings) {
+    if (texts.size() > 1) {
+      study.warnings.push_back(
+          fmt::format("WARNING: {} are the same number and are taken for one {}.",
+                      fmt::join(texts, ", "), what));
+    }
+  }
+}
+
 void warn_of_alike(ImportedStudy& study, const std::string& what,
                    const std::set<std::string>& names) {
   const auto warnings = alike_names_warnings(what, {names.begin(), names.end()});
@@ -331,6 +381,21 @@ void warn_of_missing(ImportedStudy& study) {
     study.warnings.push_back(fmt::format(
         "WARNING: in {} '{}' is read as no answer, in {}; if it is one, write another word.",
         study.columns.answer, text, counted(count, "trial", "trials")));
+  }
+}
+
+/// Warns of trials of several loops, such as practice and what follows it.
+void warn_of_loops(ImportedStudy& study) {
+  std::vector<std::string> all;
+  for (const auto& [loops, count] : study.loops) {
+    all.push_back(
+        fmt::format("{} ({})", loops.empty() ? "none" : loops, counted(count, "trial", "trials")));
+  }
+  if (all.size() > 1) {
+    study.warnings.push_back(
+        fmt::format("WARNING: trials of several loops are put together: {}; if one is practice, "
+                    "--only LOOP{} takes those of another alone.",
+                    fmt::join(all, ", "), kLoopNumber));
   }
 }
 
@@ -402,8 +467,11 @@ ImportedStudy read_trial_tables(const std::vector<fs::path>& files, const TrialC
                                  files.front().string()));
   }
   settle_factors(study);
+  settle_numbers(study, &ImportedTrial::answer, "answer");
+  settle_numbers(study, &ImportedTrial::rating, "rating");
   warn_of_alike_names(study);
   warn_of_missing(study);
+  warn_of_loops(study);
   warn_of_unit(study);
   refuse_twins(study);
   return study;

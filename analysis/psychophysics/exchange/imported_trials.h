@@ -50,7 +50,8 @@ struct ImportedStudy {
   std::size_t left_out{0};                             // rows that are no trials
   std::size_t unanswered{0};                           // trials without an answer
   std::map<std::string, std::size_t> missing_answers;  // trials by the word read as no answer
-  std::vector<std::string> warnings;  // of what may not have been meant; each a sentence
+  std::map<std::string, std::size_t> loops;  // trials by the loops of PsychoPy around them
+  std::vector<std::string> warnings;         // of what may not have been meant; each a sentence
 };
 
 /// Reads tables of one study. A row without a value in all of the columns that say what was

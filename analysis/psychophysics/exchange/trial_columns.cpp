@@ -227,12 +227,12 @@ void add_factor(std::string_view setting, TrialColumns& columns) {
 }
 
 void add_filter(std::string_view setting, TrialColumns& columns) {
-  if (setting.find('=') == setting.npos) {
-    throw InputError(fmt::format("--only is '{}'; allowed: COLUMN=VALUE", setting));
-  }
   const auto [column, value] = sides(setting);
-  columns.filters.push_back({column, value});
+  const bool any = setting.find('=') == setting.npos;
+  columns.filters.push_back({column, any ? std::nullopt : std::optional(value)});
 }
+
+std::vector<std::string> loops_of(const CsvTable& table) { return stems(table, kLoopNumber); }
 
 std::string lower_case(std::string_view text) {
   std::string result(text);

@@ -27,7 +27,7 @@ struct FactorColumn {
 /// A row is a trial only if its field in this column is `value`.
 struct RowFilter {
   std::string column;
-  std::string value;
+  std::optional<std::string> value;  // nothing: any but a missing one
 };
 
 /// The columns of a table that say what a trial was. A name that is empty: the table has none.
@@ -77,6 +77,10 @@ std::optional<double> number_in(std::string_view text);
 
 /// Whether a field stands for no value: "", "null", "None", "NA" and the like.
 bool is_missing(std::string_view text);
+
+/// The loops of a table of PsychoPy, each a column LOOP.thisN.
+std::vector<std::string> loops_of(const CsvTable& table);
+inline constexpr std::string_view kLoopNumber = ".thisN";
 
 /// The entry of a list of one, ['left'] or ["left"], as PsychoPy and jsPsych write some answers;
 /// any other text as it is.

@@ -250,6 +250,36 @@ TEST_F(ImportedTrialsTest, SpellingsOfOneNumberAreSaid) {
                           "level."));
 }
 
+TEST_F(ImportedTrialsTest, AnswersThatAreOneNumberAreOneAnswer) {
+  const std::string text = "subject,level,answer,part\na,1,1.0,1\na,2,0.0,1.0\nb,1,1,1\nb,2,0,2\n";
+  TrialColumns columns = guessed(text);
+  const ImportedStudy study = read(text, columns);
+  EXPECT_EQ(study.trials[0].answer, "1");
+  EXPECT_EQ(study.trials[1].answer, "0");
+  EXPECT_THAT(study.warnings,
+              ElementsAre("WARNING: 0, 0.0 are the same number and are taken for one answer.",
+                          "WARNING: 1, 1.0 are the same number and are taken for one answer."));
+  add_filter("part=1", columns);
+  EXPECT_EQ(read(text, columns).trials.size(), 3u);
+}
+
+TEST_F(ImportedTrialsTest, LoopsThatArePutTogetherAreSaidAndToldApart) {
+  const std::string text =
+      "practice.thisN,blocks.thisN,trials.thisN,resp.keys,resp.rt,participant,expName\n"
+      "0,,,a,1.5,ann,e\n1,,,b,1.5,ann,e\n"
+      ",0,0,a,0.5,ann,e\n,0,1,b,0.5,ann,e\n,1,0,a,0.5,ann,e\n";
+  TrialColumns columns = guessed(text);
+  const ImportedStudy all = read(text, columns);
+  EXPECT_EQ(all.trials.size(), 5u);
+  EXPECT_THAT(all.warnings,
+              ElementsAre(HasSubstr("several loops are put together: blocks and trials (3 trials), "
+                                    "practice (2 trials); if one is practice, --only LOOP.thisN")));
+  add_filter("trials.thisN", columns);
+  const ImportedStudy main = read(text, columns);
+  EXPECT_EQ(main.trials.size(), 3u);
+  EXPECT_THAT(main.warnings, IsEmpty());
+}
+
 TEST_F(ImportedTrialsTest, NamesThatTheAnalysisHasAreNoFactors) {
   TrialColumns columns;
   EXPECT_THROW(add_factor("group", columns), InputError);
