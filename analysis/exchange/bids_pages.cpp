@@ -41,19 +41,26 @@ Page& page_of(const std::string& questionnaire, std::vector<Page>& pages) {
   return at != pages.end() ? *at : pages.emplace_back(Page{questionnaire, {}, {}});
 }
 
+/// The column of an item's answers; the columns of every page have their names already.
+std::string column_of(const std::string& item) {
+  const auto taken = {"participant_id", "session_id", "when", "after_block"};
+  return std::ranges::find(taken, item) != taken.end() ? item + "_answer" : item;
+}
+
 void add_answer(const Session& session, const AnswerRow& row, std::vector<Page>& pages) {
   if (row.item == "consent") {
     return;
   }
   Page& page = page_of(row.questionnaire, pages);
-  merge_columns({{row.item, "", fmt::format("the answer to {}", row.item)}}, page.items);
+  const std::string column = column_of(row.item);
+  merge_columns({{column, "", fmt::format("the answer to {}", row.item)}}, page.items);
   const bool same = !page.showings.empty() && page.showings.back().session == &session &&
                     page.showings.back().when == row.when &&
                     page.showings.back().block == row.block;
   if (!same) {
     page.showings.push_back({&session, row.when, row.block, {}});
   }
-  page.showings.back().answers[row.item] =
+  page.showings.back().answers[column] =
       std::isfinite(row.value) ? fmt::format("{}", row.value) : row.text;
 }
 

@@ -109,6 +109,9 @@ Docs score_docs() {
     docs.push_back({column.name, column.unit, column.description});
   }
   docs.push_back({"flags", "", "what is wrong with the recording, in single words"});
+  docs.push_back({"path_error", "m", "of a recalled path: its distance from the path, rms"});
+  docs.push_back({"kept", "m", "of a led hand: its distance from the path in training, rms"});
+  docs.push_back({"session", "", "number of the session, if several train"});
   return docs;
 }
 

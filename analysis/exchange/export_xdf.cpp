@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -19,6 +20,7 @@
 #include "analysis/quality/channel_quality.h"
 #include "core/channel/channel_row.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/read/tick_rows.h"
 
 namespace haptrial::exchange {
 namespace {
@@ -41,8 +43,24 @@ std::vector<std::pair<std::string, std::string>> about(const record::SessionInfo
           {"program", fmt::format("haptrial {} ({})", info.program_version, info.program_commit)}};
 }
 
-XdfStream device_stream(const ExportSession& session) {
-  XdfStream stream{"device", "Haptics", XdfFormat::kFloat32, session.info.rate, {}};
+/// The nominal rate of the ticks; 0 where one lies a period or more beside it, as after missing
+/// ticks and suspensions: readers space the samples of a stream with a rate evenly over such gaps.
+double even_rate(const SessionReader& reader) {
+  const double rate = reader.info().rate;
+  double first = 0.0;
+  std::uint64_t ticks = 0;
+  bool even = true;
+  record::each_sample(reader, [&](const record::Sample& sample) {
+    const double time = seconds(sample.time_ns);
+    first = ticks == 0 ? time : first;
+    even = even && std::abs(time - first - static_cast<double>(ticks) / rate) < 1.0 / rate;
+    ++ticks;
+  });
+  return even ? rate : 0.0;
+}
+
+XdfStream device_stream(const ExportSession& session, double rate) {
+  XdfStream stream{"device", "Haptics", XdfFormat::kFloat32, rate, {}};
   stream.description =
       fmt::format("{}every tick of the loop; {}",
                   session.info.simulated ? "SIMULATED PARTICIPANT: " : "", axes_of(session));
@@ -64,8 +82,8 @@ std::vector<double> values_of(const record::Sample& s) {
 }
 
 /// The stream of a device after the first. @param number  as in /devices
-XdfStream other_stream(const ExportSession& session, std::size_t number) {
-  XdfStream stream = device_stream(session);
+XdfStream other_stream(const ExportSession& session, std::size_t number, double rate) {
+  XdfStream stream = device_stream(session, rate);
   stream.name = fmt::format("device_{}", number);
   stream.channels.clear();
   for (const ColumnDoc& doc : docs_of(record::table_of<record::DeviceRow>())) {
@@ -177,11 +195,12 @@ void write_messages(const SessionReader& reader, const analysis::ChannelQuality&
   }
 }
 
-/// One channel as a stream: all columns of its table but the time.
+/// One channel as a stream: all columns of its table but the time. It has no rate: an instrument
+/// keeps none, and each sample has its time.
 void write_channel_stream(const SessionReader& reader, const analysis::ChannelQuality& channel,
                           XdfFile& file) {
   const auto table = reader.description("channel_" + channel.name);
-  XdfStream stream{channel.name, "Channel", XdfFormat::kDouble64, channel.rate(), {}};
+  XdfStream stream{channel.name, "Channel", XdfFormat::kDouble64, 0.0, {}};
   std::size_t time_column = 0, column = 0;
   for (const ColumnDoc& doc : docs_of(*table)) {
     if (doc.name == "time_ns") {
@@ -212,9 +231,10 @@ std::size_t write_xdf(const fs::path& path, const ExportSession& session, Counte
   std::size_t streams = 0;
   if (reader.sample_count() > 0) {
     OtherDevices others(reader);
-    const std::uint32_t first = file.add_stream(device_stream(session));
+    const double rate = even_rate(reader);
+    const std::uint32_t first = file.add_stream(device_stream(session, rate));
     for (std::size_t number = 1; number <= others.count(); ++number) {
-      file.add_stream(other_stream(session, number));
+      file.add_stream(other_stream(session, number, rate));
     }
     streams += 1 + others.count();
     write_devices(reader, file, first, others, counter);

@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <ranges>
+#include <set>
 
+#include "core/record/read/marked_trials.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/trial_rows.h"
 
@@ -178,9 +180,12 @@ class TickTimes {
 }  // namespace
 
 std::vector<const char*> pass_statuses(const record::SessionReader& reader) {
+  const std::set<int> left_out = record::trials_left_out(reader);
   std::vector<const char*> statuses;
   for (const record::PassRow& pass : reader.passes()) {
-    statuses.push_back(pass.status == record::PassStatus::kCompleted ? "completed" : "aborted");
+    const bool marked = pass.status == record::PassStatus::kCompleted && !pass.practice &&
+                        left_out.contains(pass.trial);
+    statuses.push_back(marked ? "marked as bad" : record::name_of(pass.status));
   }
   for (const record::OutOfTimeRow& row : reader.rows<record::OutOfTimeRow>()) {
     const auto pass = static_cast<std::size_t>(row.pass);
@@ -195,6 +200,10 @@ const Levels& status_levels() {
   static const Levels levels{
       {"completed", "came to its end"},
       {"aborted", "was broken off, or its answer was taken back"},
+      {"damaged", "came to its end, but some of its samples were lost with the file"},
+      {"marked as bad",
+       "came to its end; the experimenter marked its trial, and the study leaves "
+       "such trials out"},
       {"out of time", "an answer came too early or too late; the trial was presented again"}};
   return levels;
 }
