@@ -29,7 +29,7 @@ struct StudyPlan {
   std::string definition_name;
   std::string definition;         // whole text, with its lab file's
   std::string definition_sha256;  // of that text
-  std::string scripts_sha256;     // of the scripts beside it; empty: it has none
+  std::string scripts_sha256;     // of the script of levels beside it; empty: it has none
   std::vector<PlannedGroup> groups;
   int sessions{1};  // of each participant
   std::vector<std::string> hypotheses;

@@ -151,8 +151,10 @@ struct Definition {
   virtual std::vector<std::string> warnings() const { return {}; }
   /// Parts that a session leaves out when its participant is virtual, in sentences.
   virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
-  /// Texts of the scripts beside the definition on which its sessions depend; empty: it has none.
-  virtual std::string scripts() const { return {}; }
+  /// Text of the script beside the definition that chooses what is presented; empty: it has none.
+  virtual std::string presenting_script() const { return {}; }
+  /// The same with those that virtual participants answer by.
+  virtual std::string scripts() const { return presenting_script(); }
   /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
   virtual double longest(int trials) const = 0;
 

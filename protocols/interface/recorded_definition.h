@@ -12,6 +12,10 @@ struct Definition;
 inline constexpr const char* kLanguageEvent = "language";
 inline constexpr const char* kLanguageTextsEvent = "language_texts";
 
+/// Kind of the event with the text of the script that chooses what is presented
+/// (Definition::presenting_script).
+inline constexpr const char* kLevelScriptEvent = "level_script";
+
 /// The definition that a session was recorded with, with the texts that the participant read during
 /// a trial: a session may be resumed in another language.
 /// @param trial  from 1; another language's texts are those of its last attempt. 0, or a trial that

@@ -6,6 +6,7 @@
 
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/interface/session_file.h"
 #include "protocols/psychophysics/sequence/script_process.h"
 
@@ -64,7 +65,7 @@ void SessionScripts::write(SessionFile& file, bool simulated) {
     return;
   }
   if (!std::exchange(levels_kept_, true)) {
-    file.event(kScriptEvent, d_.script->text);
+    file.event(kLevelScriptEvent, d_.script->text);
   }
   const bool first = levels_->left() == 1;
   for (const std::string& trouble : levels_->take_troubles()) {

@@ -13,8 +13,10 @@ std::vector<std::string> StudiedDefinition::description() const {
   return lines;
 }
 
+std::string StudiedDefinition::presenting_script() const { return script ? script->text : ""; }
+
 std::string StudiedDefinition::scripts() const {
-  return (script ? script->text : "") + (observer.script ? observer.script->text : "");
+  return presenting_script() + (observer.script ? observer.script->text : "");
 }
 
 }  // namespace haptrial::protocols

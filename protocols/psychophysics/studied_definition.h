@@ -13,6 +13,7 @@ struct StudiedDefinition final : TrialsDefinition {
   ObserverPlan observer;
 
   std::vector<std::string> description() const override;
+  std::string presenting_script() const override;
   std::string scripts() const override;
 };
 

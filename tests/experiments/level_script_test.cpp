@@ -17,6 +17,7 @@
 #include "core/record/rows/trial_rows.h"
 #include "experiments/runner/session.h"
 #include "experiments/studies/experiment.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/psychophysics/sequence/scripted_levels.h"
 #include "tests/experiments/command.h"
 #include "tests/experiments/session_runs.h"
@@ -110,8 +111,27 @@ TEST_F(LevelScriptSessionTest, ItsLevelsArePresentedAndItsTextIsKept) {
     }
   }
   EXPECT_EQ(levels, 8u);
-  EXPECT_THAT(events_of("S01.h5", protocols::kScriptEvent), testing::ElementsAre(ladder()));
+  EXPECT_THAT(events_of("S01.h5", protocols::kLevelScriptEvent), testing::ElementsAre(ladder()));
   EXPECT_THAT(events_of("S01.h5", protocols::kScriptTrouble), SizeIs(0));
+}
+
+TEST_F(LevelScriptSessionTest, AnotherOneThanThePlansIsADeviation) {
+  const auto command = [this](const std::string& arguments) {
+    const auto done =
+        test::run_command("cd '" + folder_.path().string() + "' && haptrial " + arguments);
+    EXPECT_EQ(done.status, 0) << done.errors;
+  };
+  const auto deviations = [&](const std::string& out) {
+    command("dry-run study.toml --subjects 1 --trials 2 --out " + out);
+    command("analyze " + out);
+    return test::read_text(folder_ / out / "report.md");
+  };
+  const auto changed = HasSubstr("the script of levels was another one (SHA-256 ");
+  test::write_text(folder_ / "levels.py", ladder());
+  command("plan study.toml");
+  EXPECT_THAT(deviations("same"), testing::Not(changed));
+  test::write_text(folder_ / "levels.py", ladder("    n += 1\n"));
+  EXPECT_THAT(deviations("other"), changed);
 }
 
 /// Each misfortune comes once; the trial has the level that the script was told the procedure
@@ -186,7 +206,7 @@ TEST_F(LevelScriptSessionTest, AResumedSessionAsksNothingAgainAndTakesNoOtherScr
   EXPECT_GE(trials.size(), 8u);
   EXPECT_LE(asked.size(), 11u) << "what was presented before the kill and is in the file is known";
   EXPECT_EQ(asked_in("parts.h5"), asked_in("whole.h5"));
-  EXPECT_THAT(events_of("parts.h5", protocols::kScriptEvent), SizeIs(1));
+  EXPECT_THAT(events_of("parts.h5", protocols::kLevelScriptEvent), SizeIs(1));
 }
 
 TEST_F(LevelScriptSessionTest, TheWorkedScriptComesToTheThreshold) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "analysis/files/sha256.h"
 #include "core/base/counted.h"
 #include "experiments/plan/audit/stated_and_done.h"
 #include "experiments/runner/version.h"
@@ -65,6 +66,17 @@ void add_definitions(const PlannedStudy& study, std::vector<Deviation>& deviatio
         for (const DefinitionChange& change : *list) {
           found[sentence_of({change})].push_back(each.name);
         }
+      }
+    }
+  }
+  for (const SessionFacts& each : study.sessions) {
+    for (const std::string& text : each.counts() ? each.scripts : std::vector<std::string>()) {
+      const std::string sha256 = analysis::sha256_of(text);
+      if (sha256 != study.plan.scripts_sha256) {
+        found[fmt::format("the script of levels was another one (SHA-256 {}), the plan states {}",
+                          sha256,
+                          study.plan.scripts_sha256.empty() ? "none" : study.plan.scripts_sha256)]
+            .push_back(each.name);
       }
     }
   }

@@ -174,7 +174,8 @@ StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
   plan.definition_name = d.file_name;
   plan.definition = d.text;
   plan.definition_sha256 = analysis::sha256_of(d.text);
-  plan.scripts_sha256 = d.scripts().empty() ? "" : analysis::sha256_of(d.scripts());
+  plan.scripts_sha256 =
+      d.presenting_script().empty() ? "" : analysis::sha256_of(d.presenting_script());
   plan.groups = planned_groups(d);
   plan.sessions = d.sessions();
   plan.hypotheses = table.hypotheses;
@@ -221,10 +222,10 @@ analysis::Document preregistration(const StudyPlan& plan,
   page.points({plan.retain_until.empty() ? std::string("how long the data is kept is not stated")
                                          : "the data is kept until " + plan.retain_until});
   page.heading("Digests");
-  page.table({"of", "SHA-256"},
-             {{"this plan, as a file", plan.sha256},
-              {"the definition", plan.definition_sha256},
-              {"scripts beside it", plan.scripts_sha256.empty() ? "none" : plan.scripts_sha256}});
+  page.table({"of", "SHA-256"}, {{"this plan, as a file", plan.sha256},
+                                 {"the definition", plan.definition_sha256},
+                                 {"script of levels beside it",
+                                  plan.scripts_sha256.empty() ? "none" : plan.scripts_sha256}});
   page.heading("Definition");
   page.source(plan.definition_name, plan.definition);
   return page;

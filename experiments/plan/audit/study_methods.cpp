@@ -11,6 +11,7 @@
 #include "experiments/studies/experiment.h"
 #include "experiments/study/session_name.h"
 #include "experiments/study/study_files.h"
+#include "protocols/interface/recorded_definition.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -106,6 +107,9 @@ SessionFacts facts_of(const fs::path& file, bool excluded) {
     for (const record::EventRow& event : reader.events()) {
       if (event.kind == kPlanEvent) {
         facts.plan_events.push_back(event.text);
+      }
+      if (event.kind == protocols::kLevelScriptEvent) {
+        facts.scripts.push_back(event.text);
       }
     }
   } catch (const InputError& error) {

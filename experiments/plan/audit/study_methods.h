@@ -23,6 +23,7 @@ struct SessionFacts {
   record::TrialProgress progress{};
   std::vector<std::string> definitions{};  // that it was recorded with, in their order
   std::vector<std::string> plan_events{};  // a text for each of its runs under a plan
+  std::vector<std::string> scripts{};      // of levels, that it was recorded with
   bool declined{false};
   bool excluded{false};
 

@@ -235,7 +235,11 @@ void note_unreached(const TrialsDefinition& d, const Presented& presented,
 class EveryValue {
  public:
   explicit EveryValue(TrialsDefinition& definition)
-      : d_(definition), handle_(definition), picture_(definition), lead_(definition) {}
+      : d_(definition),
+        handle_(definition),
+        picture_(definition),
+        lead_(definition),
+        ramp_(definition) {}
 
   HandleText check();
 
@@ -259,6 +263,7 @@ class EveryValue {
   HandleReport handle_;
   PictureReport picture_;
   LeadReport lead_;
+  RampReport ramp_;
   bool first_{true};                 // nothing was presented yet
   std::vector<std::string> bodies_;  // words about rigid ones
   std::vector<std::string> cut_;     // sentences on blocks that have too many combinations
@@ -279,6 +284,7 @@ void EveryValue::present_interval(Table& root, Names& names, const TrialValues& 
   handle_.add(presented);
   picture_.add(presented);
   lead_.add(presented);
+  ramp_.add(presented);
   note_unreached(d_, presented, values, unreached_);
   prepare_moving_bodies(presented.fields, d_.rate);
   if (std::exchange(first_, false) && place == 0) {
@@ -501,7 +507,7 @@ HandleText EveryValue::check() {
     check_block(block);
   }
   HandleText words = handle_.words();
-  for (const auto& said : {picture_.warnings(), lead_.warnings(), cut_}) {
+  for (const auto& said : {picture_.warnings(), lead_.warnings(), ramp_.warnings(), cut_}) {
     words.warnings.insert(words.warnings.end(), said.begin(), said.end());
   }
   for (const auto& [sentence, values] : unreached_) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <ranges>
 
 #include "core/base/definition/table.h"
 #include "protocols/psychophysics/definition/presented.h"
@@ -18,6 +19,11 @@ namespace {
 constexpr double kWander = 0.002;
 
 bool has(std::uint64_t bits, std::size_t i) { return (bits >> i & 1U) != 0; }
+
+std::vector<std::string> sentences_of(const std::map<std::string, std::string>& said) {
+  const auto sentences = std::views::values(said);
+  return {sentences.begin(), sentences.end()};
+}
 
 /// The field that leads a tool nearest to a region.
 struct Lead {
@@ -127,13 +133,64 @@ void LeadReport::add_way_out(const Presented& presented, const std::string& stag
   }
 }
 
-std::vector<std::string> LeadReport::warnings() const {
-  std::vector<std::string> all;
-  for (const auto& [stage, sentence] : beside_) {
-    all.push_back(sentence);
-  }
-  return all;
+std::vector<std::string> LeadReport::warnings() const { return sentences_of(beside_); }
+
+std::string ramped_in(const std::string& what, double ramp) {
+  return fmt::format(
+      "{}, while the device's force ramps in for {:g} s (envelope.ramp_in), so that the hand feels "
+      "less; let another stage come first",
+      what, ramp);
 }
+
+namespace {
+
+/// Whether a stage takes no longer than it says.
+bool ends_by_time(const Until& until) {
+  const Until none;
+  return until.inside == 0 && until.contact == 0 && until.buttons == 0 && until.keys == 0 &&
+         until.speed_below == none.speed_below && until.speed_above == none.speed_above &&
+         !until.channel;
+}
+
+}  // namespace
+
+RampReport::RampReport(const TrialsDefinition& definition) {
+  for (const DeviceArm& arm : definition.arms()) {
+    ramps_.push_back(arm.limits.ramp_in);
+  }
+}
+
+void RampReport::add(const Presented& presented) {
+  if (presented.stages.empty()) {
+    return;
+  }
+  const NamedStage& first = presented.stages.front();
+  const double lasts = first.stage.until.soonest();
+  for (std::size_t f = 0; f < presented.fields.size(); ++f) {
+    const scene::FieldTraits traits = scene::traits_of(presented.fields[f]);
+    const std::string& name = presented.fields[f].name;
+    for (std::size_t device = 0; device < ramps_.size(); ++device) {
+      const double ramp = ramps_[device];
+      const bool felt = has(first.stage.fields & presented.felt[device], f);
+      if (!felt || traits.leads_to || ramp == 0.0) {
+        continue;
+      }
+      if (ends_by_time(first.stage.until) && lasts < 2.0 * ramp) {
+        early_.try_emplace(name, ramped_in(fmt::format("fields.{} acts in the stage {}, which is "
+                                                       "the first and ends after {:g} s",
+                                                       name, first.name, lasts),
+                                           ramp));
+      } else if (traits.timed) {
+        early_.try_emplace(name, ramped_in(fmt::format("fields.{} has a course in time, which "
+                                                       "begins with the first stage, {}",
+                                                       name, first.name),
+                                           ramp));
+      }
+    }
+  }
+}
+
+std::vector<std::string> RampReport::warnings() const { return sentences_of(early_); }
 
 namespace {
 

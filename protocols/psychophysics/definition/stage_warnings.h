@@ -32,6 +32,23 @@ class LeadReport {
   std::map<std::string, std::string> beside_;  // by stage: the sentence
 };
 
+/// A sentence on what a first stage presents while the force of a pass grows (envelope.ramp_in).
+/// @param what  "fields.pull is ..."  @param ramp  [s]
+std::string ramped_in(const std::string& what, double ramp);
+
+/// Gathers what acts in first stages while the force grows, so that less than stated is felt.
+class RampReport {
+ public:
+  explicit RampReport(const TrialsDefinition& definition);
+  void add(const Presented& presented);
+  /// A sentence for each field.
+  std::vector<std::string> warnings() const;
+
+ private:
+  std::vector<double> ramps_;                 // (devices) [s]
+  std::map<std::string, std::string> early_;  // by field: the sentence
+};
+
 /// Gathers the regions that stages show outside of the participant's picture.
 class PictureReport {
  public:

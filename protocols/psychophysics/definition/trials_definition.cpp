@@ -12,6 +12,7 @@
 #include "core/psychometric/definition/expectation.h"
 #include "core/record/rows/trial_rows.h"
 #include "protocols/psychophysics/definition/only_seen.h"
+#include "protocols/psychophysics/definition/stage_warnings.h"
 
 namespace haptrial::protocols {
 
@@ -226,11 +227,10 @@ std::vector<std::string> TrialsDefinition::warnings() const {
   for (const Measure& measure : measures) {
     const double ramp = arms()[measure.device].limits.ramp_in;
     if (measure.stage == 0 && measure.quantity == MeasuredQuantity::kForce && ramp > 0.0) {
-      all.push_back(fmt::format(
-          "measures.{} takes the force that the fields give in the first stage, while the device's "
-          "force ramps in for {:g} s (envelope.ramp_in), so that the hand feels less; let another "
-          "stage come first",
-          measure.name, ramp));
+      all.push_back(ramped_in(
+          fmt::format("measures.{} takes the force that the fields give in the first stage",
+                      measure.name),
+          ramp));
     }
   }
   for (const TrialQuestion& question : questions) {

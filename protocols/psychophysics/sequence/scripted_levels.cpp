@@ -9,6 +9,7 @@
 
 #include "core/record/read/session_reader.h"
 #include "core/record/rows/trial_rows.h"
+#include "protocols/interface/recorded_definition.h"
 #include "protocols/psychophysics/sequence/trial_sequence.h"
 
 namespace haptrial::protocols {
@@ -33,7 +34,7 @@ ScriptedLevels::ScriptedLevels(const ScriptPlan& plan, std::string subject, bool
       script_(plan.file, real ? plan.deadline : kPatient) {}
 
 void ScriptedLevels::recall(const record::SessionReader& earlier) {
-  recalled_ = kept_before(plan_, kScriptEvent, earlier);
+  recalled_ = kept_before(plan_, kLevelScriptEvent, earlier);
   const std::vector<record::PassRow> passes = earlier.passes();
   std::map<int, std::int32_t> last;  // pass of each trial
   for (const record::LevelRow& row : earlier.rows<record::LevelRow>()) {

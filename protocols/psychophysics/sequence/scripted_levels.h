@@ -40,8 +40,7 @@ class LevelScript {
   ScriptProcess process_;
 };
 
-/// Events of a session whose levels a script chooses: its text, and why a level is not its own.
-inline constexpr const char* kScriptEvent = "level_script";
+/// Kind of the event of a level that is not the script's own, which says why.
 inline constexpr const char* kScriptTrouble = "level_script_failed";
 
 /// Levels of a script (docs/guide-own-experiment.md), or of the procedures where it gives none.

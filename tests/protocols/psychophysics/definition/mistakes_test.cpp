@@ -530,6 +530,30 @@ TEST(TrialMistakesTest, AWallIsJudgedByTheDelayOfTheDeviceThatFeelsIt) {
                                               HasSubstr("3 ticks late"))));
 }
 
+TEST(TrialMistakesTest, AForceThatActsWhileThePassRampsInGetsAWarning) {
+  const auto warnings = [](const std::string& field, const std::string& first) {
+    TrialsDefinition d;
+    read_small(test::replaced(small_trials(kSmallStaircase, "[fields.pull]\n" + field),
+                              "[[stages]]\n", first + "[[stages]]\n"),
+               d);
+    return check_every_value(d).warnings;
+  };
+  const std::string pulse = "type = \"pulse\"\nforce = [0.0, -4.0, 0.0]\nduration = 0.05\n";
+  const std::string constant = "type = \"constant\"\nforce = [0.0, -1.0, 0.0]\n";
+  const auto stage = [](const std::string& time, const std::string& fields) {
+    return "[[stages]]\nname = \"early\"\nfields = [" + fields + "]\nuntil = { time = " + time +
+           " }\n";
+  };
+  EXPECT_THAT(warnings(pulse, stage("0.6", "\"pull\"")),
+              ElementsAre(HasSubstr("fields.pull has a course in time, which begins with the first "
+                                    "stage, early, while the device's force ramps in for 0.1 s")));
+  EXPECT_THAT(warnings(constant, stage("0.05", "\"pull\"")),
+              ElementsAre(HasSubstr("fields.pull acts in the stage early, which is the first and "
+                                    "ends after 0.05 s, while the device's force ramps in")));
+  EXPECT_THAT(warnings(constant, stage("0.6", "\"pull\"")), IsEmpty());
+  EXPECT_THAT(warnings(pulse, stage("0.3", "") + stage("0.6", "\"pull\"")), IsEmpty());
+}
+
 TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
   const auto warnings = [](const std::string& more) {
     TrialsDefinition definition;
