@@ -26,9 +26,7 @@ std::vector<std::string> joined(std::vector<std::string> first,
 void add_means(const DesignTable& table, LearnedOutcome& outcome) {
   outcome.groups = table.factors[kGroup].levels;
   outcome.sessions = table.factors[kSession].levels;
-  outcome.means.assign(
-      outcome.groups.size(),
-      std::vector<Defined<MeanInterval>>(outcome.sessions.size(), Undefined{"nobody came"}));
+  outcome.means.assign(outcome.groups.size(), std::vector<Mean>(outcome.sessions.size()));
   for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
     std::vector<double> values;
     for (const auto& row : table.means) {
@@ -38,7 +36,7 @@ void add_means(const DesignTable& table, LearnedOutcome& outcome) {
     }
     const auto& levels = table.cells[cell];
     if (!values.empty()) {
-      outcome.means[levels[kGroup]][levels[kSession]] = mean_interval(values);
+      outcome.means[levels[kGroup]][levels[kSession]] = mean_and_interval(values);
     }
   }
 }
@@ -85,12 +83,13 @@ Series series_of(const LearnedOutcome& outcome, std::size_t group) {
   Series series{outcome.groups[group], Mark::kLinkedBars, look_of_group(group)};
   const double middle = 0.5 * static_cast<double>(outcome.groups.size() - 1);
   for (std::size_t session = 0; session < outcome.sessions.size(); ++session) {
-    if (const auto& mean = outcome.means[group][session]) {
+    const Mean& mean = outcome.means[group][session];
+    if (mean.value) {
       series.x.push_back(static_cast<double>(session + 1) +
                          kAside * (static_cast<double>(group) - middle));
-      series.y.push_back(mean->mean);
-      series.low.push_back(mean->low);
-      series.high.push_back(mean->high);
+      series.y.push_back(*mean.value);
+      series.low.push_back(mean.interval ? mean.interval->low : *mean.value);
+      series.high.push_back(mean.interval ? mean.interval->high : *mean.value);
     }
   }
   return series;
@@ -147,8 +146,7 @@ void add_outcome_table(Document& document, const LearnedOutcome& outcome,
 
 }  // namespace
 
-Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::string& group,
-                                  const std::string& test) {
+Mean mean_change(const LearnedOutcome& outcome, const std::string& group, const std::string& test) {
   const DesignTable& table = outcome.changes;
   std::vector<double> values;
   for (std::size_t cell = 0; cell < table.cells.size(); ++cell) {
@@ -162,7 +160,7 @@ Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::stri
       }
     }
   }
-  return mean_interval(values);
+  return mean_and_interval(values);
 }
 
 LearnedStudy learned_study(std::span<const LearningQuantity> quantities, const LearningPlan& plan,

@@ -28,7 +28,7 @@ struct LearnedOutcome {
   std::vector<std::string> groups;    // that have values, in the definition's order
   std::vector<std::string> sessions;  // likewise, tests and trainings
   /// (groups x sessions) over participants' means; undefined where nobody came.
-  std::vector<std::vector<Defined<MeanInterval>>> means;
+  std::vector<std::vector<Mean>> means;
   DesignTable changes;  // from the baseline, by "group" and "change" up to a test
   DesignTests tests;    // of them
 };
@@ -45,8 +45,7 @@ LearnedStudy learned_study(std::span<const LearningQuantity> quantities, const L
                            const LearningNames& names);
 
 /// The mean change of a group from the baseline to a test.
-Defined<MeanInterval> mean_change(const LearnedOutcome& outcome, const std::string& group,
-                                  const std::string& test);
+Mean mean_change(const LearnedOutcome& outcome, const std::string& group, const std::string& test);
 
 /// A figure of each outcome over the sessions, by group.
 std::vector<Figure> learning_figures(const LearnedStudy& study, bool simulated);

@@ -5,15 +5,8 @@
 #include "analysis/statistics/design/result_json_internal.h"
 
 namespace haptrial::analysis {
-namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json mean_json(const Defined<MeanInterval>& mean) {
-  return mean ? to_json(*mean) : Json{{"not_defined", mean.because()}};
-}
-
-}  // namespace
 
 nlohmann::ordered_json learning_json(const LearnedStudy& study) {
   Json outcomes = Json::array();
@@ -23,7 +16,7 @@ nlohmann::ordered_json learning_json(const LearnedStudy& study) {
       for (std::size_t s = 0; s < outcome.sessions.size(); ++s) {
         means.push_back({{"group", outcome.groups[g]},
                          {"session", outcome.sessions[s]},
-                         {"mean", mean_json(outcome.means[g][s])}});
+                         {"mean", to_json(outcome.means[g][s])}});
       }
     }
     outcomes.push_back({{"outcome", outcome.name},

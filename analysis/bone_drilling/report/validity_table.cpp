@@ -20,12 +20,6 @@ Values values_where(const ValueTable& table, Predicate&& wanted) {
   return values;
 }
 
-/// Student's t gives values that do not vary no width, though the next one may be another.
-Defined<MeanInterval> interval_of_varying(const Values& values) {
-  const auto interval = mean_interval(values);
-  return interval && !(interval->deviation > 0.0) ? Undefined{"the values do not vary"} : interval;
-}
-
 template <class Predicate>
 GroupValues values_of_group(const ValueTable& table, const ValueTable& means, std::string name,
                             Predicate&& wanted) {
@@ -35,7 +29,7 @@ GroupValues values_of_group(const ValueTable& table, const ValueTable& means, st
   group.procedures = pooled.size();
   group.participants = by_participant.size();
   group.pooled = mean_interval(pooled);
-  group.participant_means = interval_of_varying(by_participant);
+  group.participant_means = mean_interval(by_participant);
   if (const Defined<Moments> m = moments(by_participant)) {
     group.mean = m->mean();
   }

@@ -275,6 +275,10 @@ void find_static_friction(const ContactSamples& s, const IdentificationOptions& 
     return;
   }
   const auto mean = analysis::mean_interval(ratios, o.level);
+  if (!mean) {
+    found.confounded.push_back("Static friction has no interval, because " + mean.because() + ".");
+    return;
+  }
   found.static_friction = Interval{mean->mean, mean->low, mean->high};
 }
 

@@ -1,8 +1,10 @@
 #include "analysis/force_training/report/comparison.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
@@ -89,8 +91,8 @@ ConditionComparison compare(const StudyComparison& studies, const std::string& c
   c.condition = condition;
   const auto before = means_of(studies.first.scores, condition);
   const auto after = means_of(studies.second.scores, condition);
-  c.first = mean_interval(values_of(before));
-  c.second = mean_interval(values_of(after));
+  c.first = mean_and_interval(values_of(before));
+  c.second = mean_and_interval(values_of(after));
   c.first_people = before.size();
   c.second_people = after.size();
   c.welch = welch_t_test(values_of(after), values_of(before), Tail::kTwoSided);
@@ -159,6 +161,19 @@ void adjust(std::vector<ConditionComparison>& conditions) {
   }
 }
 
+/// Says which conditions one study alone has.
+void note_own_conditions(const ScoredStudy& study, const StudyStatistics& own,
+                         const StudyStatistics& other, std::vector<std::string>& remarks) {
+  std::vector<std::string> alone;
+  std::ranges::copy_if(own.conditions, std::back_inserter(alone), [&](const std::string& name) {
+    return std::ranges::find(other.conditions, name) == other.conditions.end();
+  });
+  if (!alone.empty()) {
+    remarks.push_back(
+        fmt::format("Only in {}, so not compared: {}.", study.name, fmt::join(alone, ", ")));
+  }
+}
+
 }  // namespace
 
 StudyComparison compare_studies(ScoredStudy first, ScoredStudy second, Scoring scoring) {
@@ -176,6 +191,10 @@ StudyComparison compare_studies(ScoredStudy first, ScoredStudy second, Scoring s
   comparison.first = std::move(first);
   comparison.second = std::move(second);
   pair_participants(comparison);
+  note_own_conditions(comparison.first, comparison.first_statistics, comparison.second_statistics,
+                      comparison.remarks);
+  note_own_conditions(comparison.second, comparison.second_statistics, comparison.first_statistics,
+                      comparison.remarks);
   const auto& others = comparison.second_statistics.conditions;
   for (const std::string& condition : comparison.first_statistics.conditions) {
     if (std::find(others.begin(), others.end(), condition) != others.end()) {

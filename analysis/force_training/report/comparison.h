@@ -31,8 +31,8 @@ ScoredStudy read_scored_study(const std::filesystem::path& folder);
 /// Recall error of one condition in two studies; differences are second minus first.
 struct ConditionComparison {
   std::string condition;
-  Defined<MeanInterval> first{Undefined{"there are no participants"}};  // of participants' means
-  Defined<MeanInterval> second{Undefined{"there are no participants"}};
+  Mean first;  // of participants' means
+  Mean second;
   std::size_t first_people{0};  // participants with the condition
   std::size_t second_people{0};
   Defined<TTest> welch{Undefined{"there are no participants"}};        // of the means, two-sided
@@ -63,7 +63,7 @@ struct StudyComparison {
   std::vector<std::string> paired;           // the same participants in both
   std::vector<Unpaired> unpaired;
   std::vector<ConditionComparison> conditions;  // those that both studies have
-  std::vector<std::string> remarks;             // sentences about the studies' definitions
+  std::vector<std::string> remarks;             // sentences on what the studies do not share
 };
 
 /// Whether scores that were made with different parameters may be compared.

@@ -10,6 +10,7 @@
 #include "analysis/document/palette.h"
 #include "analysis/document/report_style.h"
 #include "analysis/force_training/report/comparison.h"
+#include "analysis/statistics/design/result_json_internal.h"
 #include "analysis/statistics/design/wording.h"
 #include "core/base/file_text.h"
 #include "core/base/whole_file.h"
@@ -96,8 +97,8 @@ std::string within_people(const ConditionComparison& c) {
 
 std::string adjusted(const Defined<double>& p) { return p ? p_value(*p) : "-"; }
 
-std::string mean_text(const Defined<MeanInterval>& mean, std::size_t people) {
-  return fmt::format("{} ({})", mean ? number(mean->mean) : "not defined",
+std::string mean_text(const Mean& mean, std::size_t people) {
+  return fmt::format("{} ({})", mean.value ? number(*mean.value) : "not defined",
                      counted(people, "participant"));
 }
 
@@ -115,13 +116,13 @@ Figure figure_of(const StudyComparison& comparison) {
   double place = 0.0;
   for (const auto& c : comparison.conditions) {
     figure.x_names.emplace_back(++place, capitalized(c.condition));
-    const auto add = [&](Series& series, double x, const Defined<MeanInterval>& m) {
-      if (m) {
+    const auto add = [&](Series& series, double x, const Mean& m) {
+      if (m.value) {
         series.x.push_back(x);
-        series.y.push_back(m->mean);
-        series.low.push_back(m->low);
-        series.high.push_back(m->high);
-        highest = std::max(highest, m->high);
+        series.y.push_back(*m.value);
+        series.low.push_back(m.interval ? m.interval->low : *m.value);
+        series.high.push_back(m.interval ? m.interval->high : *m.value);
+        highest = std::max(highest, series.high.back());
       }
     };
     add(first, place - 0.1, c.first);
@@ -260,15 +261,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json compared_json(const Defined<MeanInterval>& m) {
-  return m ? Json{{"count", m->count},
-                  {"mean", m->mean},
-                  {"standard_deviation", m->deviation},
-                  {"low_95", m->low},
-                  {"high_95", m->high}}
-           : Json{{"not_defined", m.because()}};
-}
-
 Json compared_json(const Defined<TTest>& t) {
   return t ? Json{{"t", t->t},
                   {"df", t->df},
@@ -322,8 +314,8 @@ std::string comparison_json(const StudyComparison& comparison) {
   for (const auto& c : comparison.conditions) {
     root["conditions"].push_back(
         {{"condition", c.condition},
-         {"first_participant_means", compared_json(c.first)},
-         {"second_participant_means", compared_json(c.second)},
+         {"first_participant_means", to_json(c.first)},
+         {"second_participant_means", to_json(c.second)},
          {"welch_two_sided", compared_json(c.welch)},
          {"welch_p_holm", compared_json(c.welch_holm)},
          {"shared_participants", c.shared},

@@ -232,7 +232,8 @@ Figure learning_over_blocks(const StudyResult& study) {
   figure.y_range = Range{0.0, highest > 0.0 ? 1.1 * highest : 1.0};
   figure.caption =
       std::string() +
-      "Recall error in each block of the session: means of the participants' means with 95 % "
+      "Recall error in each block, those of later sessions after those of earlier ones: means of "
+      "the participants' means with 95 % "
       "confidence intervals over participants; small circles are participants. " +
       sentence_of(order_balance(study.scores, study.statistics.conditions));
   figure.alt = "Mean recall error by block:" + figure.alt;

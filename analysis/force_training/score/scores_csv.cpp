@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "analysis/quality/trial_quality.h"
@@ -32,6 +33,14 @@ const std::string& quality_heading() {
 
 /// Columns of studies that recall a path.
 constexpr std::string_view kPath = ",path_error,kept";
+
+/// The column of studies with several sessions that train: numbers of trials are a session's.
+constexpr std::string_view kSession = ",session";
+
+bool has_sessions(std::span<const TrialScore> scores) {
+  return std::ranges::adjacent_find(scores, std::ranges::not_equal_to(), &TrialScore::session) !=
+         scores.end();
+}
 
 bool has_paths(std::span<const TrialScore> scores) {
   return std::any_of(scores.begin(), scores.end(),
@@ -91,6 +100,11 @@ class Reader {
       rest_.remove_prefix(kPath.size());
       columns_ += 2;
     }
+    has_session_ = has_quality_ && rest_.starts_with(kSession);
+    if (has_session_) {
+      rest_.remove_prefix(kSession.size());
+      columns_ += 1;
+    }
     if (!rest_.starts_with('\n')) {
       fail(kNoHeading);
     }
@@ -119,11 +133,14 @@ class Reader {
       for (const QualityColumn& column : quality_columns()) {
         column.field(s.quality) = optional_number(',');
       }
-      text(has_path_ ? ',' : '\n');  // the flags follow from the numbers
+      text(has_path_ || has_session_ ? ',' : '\n');  // the flags follow from the numbers
     }
     if (has_path_) {
       s.path_error = optional_number(',');
-      s.kept = optional_number('\n');
+      s.kept = optional_number(has_session_ ? ',' : '\n');
+    }
+    if (has_session_) {
+      s.session = number<std::int32_t>('\n');
     }
     return s;
   }
@@ -188,6 +205,7 @@ class Reader {
   std::size_t levels_{0};
   bool has_quality_{false};
   bool has_path_{false};
+  bool has_session_{false};
 };
 
 }  // namespace
@@ -210,7 +228,9 @@ std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::
   }
   text += kScore;
   const bool paths = has_paths(scores);
-  text += quality_heading() + std::string(paths ? kPath : "") + "\n";
+  const bool sessions = has_sessions(scores);
+  text += quality_heading();
+  text += std::string(paths ? kPath : "") + std::string(sessions ? kSession : "") + "\n";
   for (const auto& s : scores) {
     text += fmt::format("{},{},{},{},{},", field(s.subject), s.trial, s.block, s.repetition,
                         field(s.condition));
@@ -223,7 +243,8 @@ std::string scores_csv(std::span<const TrialScore> scores, std::span<const std::
       text += cell(column.of(s.quality));
     }
     text += "," + field(flag_names(s.quality));
-    text += (paths ? cell(s.path_error) + cell(s.kept) : "") + "\n";
+    text += paths ? cell(s.path_error) + cell(s.kept) : "";
+    text += (sessions ? fmt::format(",{}", s.session) : "") + "\n";
   }
   return text;
 }

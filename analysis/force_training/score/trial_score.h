@@ -21,7 +21,7 @@ struct TrialScore {
   std::string subject;
   std::string condition;  // training condition of the block
   std::int32_t trial{0};
-  std::int32_t block{0};
+  std::int32_t block{0};  // in a study: over the sessions that train, as they follow each other
   std::int32_t repetition{0};
   double score{0.0};           // weighted average of the three below; 0 is perfect recall
   double alignment_cost{0.0};  // minimum path cost per path step, in the units of the error matrix

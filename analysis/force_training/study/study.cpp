@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -91,6 +92,19 @@ std::vector<RecallPicture> pictures(const std::vector<Session>& sessions,
   return result;
 }
 
+/// Counts blocks over the sessions that train, as they follow each other.
+void count_over_sessions(std::vector<TrialScore>& scores) {
+  std::map<std::int32_t, std::int32_t> last;  // block of each session
+  for (const TrialScore& score : scores) {
+    last[score.session] = std::max(last[score.session], score.block);
+  }
+  for (TrialScore& score : scores) {
+    for (const auto& [session, block] : last) {
+      score.block += session < score.session ? block : 0;
+    }
+  }
+}
+
 }  // namespace
 
 StudyResult analyze_study(const std::vector<fs::path>& session_files,
@@ -128,6 +142,7 @@ StudyResult analyze_study(const std::vector<fs::path>& session_files,
                             recalls.exclusions.end());
     tracking.insert(tracking.end(), recalls.tracking.begin(), recalls.tracking.end());
   }
+  count_over_sessions(study.scores);
   study.statistics = study_statistics(study.scores, questions_of(study.factors, plan, jobs));
   study.path = path_statistics(study.scores, questions_of(study.factors, plan, jobs));
   study.frequencies =

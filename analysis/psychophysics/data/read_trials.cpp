@@ -85,7 +85,8 @@ class SessionTrials {
     trial.condition = pass.condition;
     trial.practice = pass.practice;
     trial.left_out = !pass.practice && left_out_.contains(pass.trial);
-    trial.completed = pass.status == record::PassStatus::kCompleted;
+    trial.completed = pass.status != record::PassStatus::kAborted;
+    trial.damaged = pass.status == record::PassStatus::kDamaged;
     trial.start = static_cast<double>(pass.first_sample) / reader_.info().rate;
     trial.first_sample = pass.first_sample;
     trial.saturated = at_limit(pass.first_sample, pass.last_sample);

@@ -156,6 +156,7 @@ void add_trial(std::string& text, const TrialsData& data, const StudyTrial& tria
   row.add(trial.practice ? 1 : 0);
   row.add(!trial.completed ? "aborted"
           : trial.again    ? "out of time"
+          : trial.damaged  ? "damaged"
           : trial.left_out ? "marked as bad"
                            : "completed");
   row.add(trial.counts() ? 1 : 0).add(trial.start).add(trial.saturated);

@@ -116,6 +116,7 @@ struct StudyTrial {
   Word probe;  // empty: none
   bool practice{false};
   bool completed{true};
+  bool damaged{false};             // it lost samples with its file: its answer has had its effect
   bool left_out{false};            // marked as bad, and the definition leaves such trials out
   bool again{false};               // an answer was too fast or too slow, and the trial came again
   double start{0.0};               // since the session's first tick [s]
@@ -132,7 +133,7 @@ struct StudyTrial {
   /// of later trials may follow from it.
   bool happened() const { return completed && !again && !practice; }
   /// Whether it is analysed.
-  bool counts() const { return happened() && !left_out; }
+  bool counts() const { return happened() && !damaged && !left_out; }
 };
 
 /// All passes of a study, session after session, in the order of their recording.

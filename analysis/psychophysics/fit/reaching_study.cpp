@@ -286,9 +286,8 @@ Defined<TwoRateLearning> two_rate_of(const std::vector<ReachIndex>& standings,
 }
 
 template <class Value>
-Defined<MeanInterval> mean_of(const std::vector<ReachIndex>& standings,
-                              const ReachingResult& result, std::size_t block, ReachKind kind,
-                              Value&& value) {
+Mean mean_of(const std::vector<ReachIndex>& standings, const ReachingResult& result,
+             std::size_t block, ReachKind kind, Value&& value) {
   std::map<std::size_t, std::pair<double, double>> people;
   for (std::size_t i = 0; i < standings.size(); ++i) {
     if (standings[i].block != block || result.reaches[i].kind != kind) {
@@ -303,7 +302,7 @@ Defined<MeanInterval> mean_of(const std::vector<ReachIndex>& standings,
   for (const auto& [participant, own] : people) {
     means.push_back(own.first / own.second);
   }
-  return mean_interval(means);
+  return mean_and_interval(means);
 }
 
 BlockMeans means_of(const std::vector<ReachIndex>& standings, const ReachingResult& result,

@@ -45,13 +45,13 @@ struct ReachContrast {
 
 /// Means over participants of a block's plain reaches, turned so that the field pushes towards +.
 struct BlockMeans {
-  Defined<MeanInterval> movement_time{Undefined{"there is no reach"}};    // [s]
-  Defined<MeanInterval> peak_speed{Undefined{"there is no reach"}};       // [m/s]
-  Defined<MeanInterval> error{Undefined{"there is no reach"}};            // largest [m]
-  Defined<MeanInterval> error_at_150_ms{Undefined{"there is no reach"}};  // [m]
-  Defined<MeanInterval> direction{Undefined{"there is no reach"}};        // at 150 ms [rad]
-  Defined<MeanInterval> area{Undefined{"there is no reach"}};             // [m²]
-  Defined<MeanInterval> compensation{Undefined{"there is no reach in a channel"}};
+  Mean movement_time;    // [s]
+  Mean peak_speed;       // [m/s]
+  Mean error;            // largest [m]
+  Mean error_at_150_ms;  // [m]
+  Mean direction;        // at 150 ms [rad]
+  Mean area;             // [m²]
+  Mean compensation;
 };
 
 /// How reaches of a participant went wrong.

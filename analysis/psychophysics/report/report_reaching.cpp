@@ -20,8 +20,11 @@ using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kMostPaths = 24;
 
-std::string interval_word(const Defined<MeanInterval>& mean, double scale) {
-  return mean ? estimate_word({scale * mean->mean, scale * mean->low, scale * mean->high}) : "–";
+std::string interval_word(const Mean& mean, double scale) {
+  if (const auto& whole = mean.interval) {
+    return estimate_word({scale * whole->mean, scale * whole->low, scale * whole->high});
+  }
+  return mean.value ? estimate_word({scale * *mean.value}) : "–";
 }
 
 void add_block_means(Document& document, const ReachingResult& reaching) {
@@ -189,11 +192,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class T>
-Json defined(const Defined<T>& value) {
-  return value ? analysis::to_json(*value) : Json{{"not_defined", value.because()}};
-}
-
 Json interval(double estimate, const Defined<BootstrapInterval>& of) {
   Json made{{"estimate", estimate}};
   if (of) {
@@ -243,13 +241,13 @@ Json blocks_json(const ReachingResult& reaching) {
              {"first_cycle", block.first_cycle + 1},
              {"cycles", block.cycles},
              {"perturbation", block.perturbation}};
-    one["means"] = {{"movement_time_s", defined(m.movement_time)},
-                    {"peak_speed_m_per_s", defined(m.peak_speed)},
-                    {"maximum_perpendicular_error_m", defined(m.error)},
-                    {"perpendicular_error_at_150_ms_m", defined(m.error_at_150_ms)},
-                    {"direction_error_at_150_ms_rad", defined(m.direction)},
-                    {"signed_area_m2", defined(m.area)},
-                    {"force_compensation", defined(m.compensation)}};
+    one["means"] = {{"movement_time_s", analysis::to_json(m.movement_time)},
+                    {"peak_speed_m_per_s", analysis::to_json(m.peak_speed)},
+                    {"maximum_perpendicular_error_m", analysis::to_json(m.error)},
+                    {"perpendicular_error_at_150_ms_m", analysis::to_json(m.error_at_150_ms)},
+                    {"direction_error_at_150_ms_rad", analysis::to_json(m.direction)},
+                    {"signed_area_m2", analysis::to_json(m.area)},
+                    {"force_compensation", analysis::to_json(m.compensation)}};
     one["exponential"] = fit_json(block.fit);
     blocks.push_back(std::move(one));
   }

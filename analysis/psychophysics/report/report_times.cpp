@@ -27,7 +27,7 @@ void add_number(FindingRow& row, const char* name, const char* title,
   }
 }
 
-void add_coefficient(FindingRow& row, const char* name, const char* title,
+void add_coefficient(FindingRow& row, const char* name, const char* title, const std::string& unit,
                      const Defined<Regression>& line, std::size_t which) {
   if (!line) {
     row.push_back({.name = name, .title = title, .why_not = line.because()});
@@ -39,7 +39,7 @@ void add_coefficient(FindingRow& row, const char* name, const char* title,
                  .value = c.estimate,
                  .low = c.low,
                  .high = c.high,
-                 .unit = "s",
+                 .unit = unit,
                  .csv = name,
                  .form = JsonForm::kEstimate});
 }
@@ -94,14 +94,14 @@ FindingRow time_row(const TrialsPlan& plan, const TimedCondition& one) {
   if (one.judged > 0) {
     add_share(row, one);
   }
-  add_number(row, "mean_time", "mean time (s)", one.mean);
-  add_number(row, "median_time", "median time (s)", one.median);
+  add_number(row, "mean_time", "mean time", one.mean);
+  add_number(row, "median_time", "median time", one.median);
   if (plan.diffusion) {
     add_diffusion(row, one.diffusion);
   }
   if (!plan.level.empty()) {
-    add_coefficient(row, "slope", "slope (s)", one.line, 1);
-    add_coefficient(row, "intercept", "intercept (s)", one.line, 0);
+    add_coefficient(row, "slope", "slope", slope_unit(plan), one.line, 1);
+    add_coefficient(row, "intercept", "intercept", "s", one.line, 0);
   }
   return row;
 }

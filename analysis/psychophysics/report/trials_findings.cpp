@@ -211,7 +211,7 @@ FindingTable participant_findings(const TrialsResult& result) {
     add(row, "trials", "trials", p.counted);
     add(row, "planned_trials_at_most", title_if(p.planned > 0, "planned at most"), p.planned);
     add(row, "practice", "practice", p.practice);
-    add(row, "aborted", "aborted passes", p.aborted);
+    add(row, "aborted", "aborted or damaged passes", p.aborted);
     const char* time = "median reaction time";  // nothing is asked in reaches
     add_defined(row, "median_reaction_time_s", title_if(!result.reaching, time), p.reaction_time)
         .unit = "s";

@@ -52,7 +52,8 @@ void add_design(Document& document, const TrialsResult& result) {
         fmt::format("Conditions are the levels of {}.", fmt::join(result.plan.by, ", ")));
   }
   document.paragraph(
-      "Practice and aborted passes are in trials.csv (column counted: 0) and in nothing else.");
+      "Practice and passes that were aborted or damaged are in trials.csv (column counted: 0) and "
+      "in nothing else.");
   if (result.participants.size() > kMostDrawn) {
     document.paragraph(fmt::format(
         "Pictures of single participants are drawn of the first {}; estimates.csv and trials.csv "

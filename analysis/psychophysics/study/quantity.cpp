@@ -103,9 +103,6 @@ Quantity quantity(std::string name, std::string title, std::string unit,
     Defined<MeanInterval> mean = mean_interval(means);
     if (beyond != open.end()) {
       mean = left_out(beyond->second, means.size());
-    } else if (mean && !(mean->deviation > 0.0)) {
-      // Student's t gives no width then, though the next participant may have another value.
-      mean = Undefined{"the values do not vary"};
     } else if (mean) {
       mean = within_range(*mean, range);
     }

@@ -88,4 +88,6 @@ std::vector<TimedCondition> timed(const TrialsData& data, const TrialsPlan& plan
   return result;
 }
 
+std::string slope_unit(const TrialsPlan& plan) { return "s per " + plan.level; }
+
 }  // namespace haptrial::analysis::trials

@@ -39,4 +39,7 @@ struct TimedCondition {
 /// the definition names a level.
 std::vector<TimedCondition> timed(const TrialsData& data, const TrialsPlan& plan);
 
+/// The unit of a time's slope over the level: "s per stiffness".
+std::string slope_unit(const TrialsPlan& plan);
+
 }  // namespace haptrial::analysis::trials

@@ -29,7 +29,7 @@ struct ParticipantTrials {
   std::size_t planned{0};  // trials, at most; 0: the files do not say it
   std::size_t counted{0};
   std::size_t practice{0};
-  std::size_t aborted{0};                                           // passes
+  std::size_t aborted{0};                                           // or damaged passes
   Defined<double> reaction_time{Undefined{"it was not measured"}};  // median [s]
   /// Share of the counted trials that reached the force limit, by stage.
   std::map<std::string, double> at_limit;

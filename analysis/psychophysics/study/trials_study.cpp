@@ -29,7 +29,7 @@ std::vector<ParticipantTrials> participants_of(const TrialsData& data, const Tri
   }
   for (const StudyTrial& trial : data.trials) {
     ParticipantTrials& own = people[data.session_of(trial).participant];
-    if (!trial.completed || trial.again) {
+    if (!trial.completed || trial.again || trial.damaged) {
       ++own.aborted;
     } else if (trial.practice) {
       ++own.practice;
@@ -278,7 +278,7 @@ void add_lines(TrialsResult& result, const std::string& what) {
   };
   result.quantities.push_back(quantity("slope",
                                        fmt::format("slope of the {} over {}", what, plan.level),
-                                       "s", coefficient(1), plan));
+                                       slope_unit(plan), coefficient(1), plan));
   result.quantities.push_back(quantity("intercept", fmt::format("{} at {} = 0", what, plan.level),
                                        "s", coefficient(0), plan));
 }

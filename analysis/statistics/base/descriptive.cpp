@@ -69,9 +69,20 @@ Defined<MeanInterval> mean_interval(std::span<const double> values, double level
     return Undefined{"an interval needs at least two values"};
   }
   const double deviation = std::sqrt(m->variance());
+  if (!(deviation > 0.0)) {
+    return Undefined{"the values do not vary"};
+  }
   const auto n = static_cast<double>(m->count);
   const double half = t_quantile(0.5 * (1.0 + level), n - 1.0) * deviation / std::sqrt(n);
   return MeanInterval{m->count, m->mean(), deviation, m->mean() - half, m->mean() + half};
+}
+
+Mean mean_and_interval(std::span<const double> values) {
+  Mean mean{Undefined{"there are no values"}, mean_interval(values)};
+  if (const auto m = moments(values)) {
+    mean.value = m->mean();
+  }
+  return mean;
 }
 
 Defined<double> quantile(std::span<const double> values, double fraction) {

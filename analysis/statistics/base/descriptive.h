@@ -44,8 +44,16 @@ struct MeanInterval {
 };
 
 /// @param level  coverage of the interval, inside (0, 1).
-/// Undefined with fewer than two values or with one that is not finite.
+/// Undefined with fewer than two values, with one that is not finite, and if all are the same:
+/// Student's t gives those no width, though the next one may be another.
 Defined<MeanInterval> mean_interval(std::span<const double> values, double level = 0.95);
+
+/// A mean of any number of values, with its interval where there is one.
+struct Mean {
+  Defined<double> value{Undefined{"there are no values"}};
+  Defined<MeanInterval> interval{Undefined{"there are no values"}};
+};
+Mean mean_and_interval(std::span<const double> values);
 
 /// The value below which a fraction of the values lies, linear between order statistics.
 /// Undefined without values or with one that is not finite.

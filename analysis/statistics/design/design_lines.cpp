@@ -77,12 +77,8 @@ std::string line_of_cell(const DesignTable& table, std::size_t cell) {
       means.push_back(*row[cell]);
     }
   }
-  const auto interval = mean_interval(means);
-  const auto whole = moments(means);
   return fmt::format("{}: mean {} ({}, {})", table.names[cell],
-                     interval && interval->deviation > 0.0 ? mean_with_interval(interval)
-                     : whole                               ? number(whole->mean())
-                             : "not defined, because " + whole.because(),
+                     mean_with_interval(mean_and_interval(means)),
                      counted(means.size(), "participant"), counted(table.counts[cell], "value"));
 }
 

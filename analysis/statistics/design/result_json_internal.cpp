@@ -18,6 +18,18 @@ Json to_json(const MeanInterval& m) {
           {"high_95", m.high}};
 }
 
+Json to_json(const Mean& m) {
+  if (m.interval) {
+    return to_json(*m.interval);
+  }
+  Json json;
+  if (m.value) {
+    json["mean"] = *m.value;
+  }
+  json["not_defined"] = m.interval.because();
+  return json;
+}
+
 Json to_json(const EffectSize& e) {
   return {{"value", e.value}, {"low", e.low}, {"high", e.high}, {"level", e.level}};
 }

@@ -320,4 +320,12 @@ std::string interval_word(const Defined<MeanInterval>& m) {
   return m ? fmt::format("{} [{}, {}]", number(m->mean), number(m->low), number(m->high)) : "–";
 }
 
+std::string interval_word(const Mean& mean) {
+  return mean.value && !mean.interval ? number(*mean.value) : interval_word(mean.interval);
+}
+
+std::string mean_with_interval(const Mean& mean) {
+  return mean.value && !mean.interval ? number(*mean.value) : mean_with_interval(mean.interval);
+}
+
 }  // namespace haptrial::analysis

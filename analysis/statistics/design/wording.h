@@ -22,6 +22,8 @@ namespace haptrial::analysis {
 std::string p_value(double p);
 /// "1.234, 95 % CI 1.1 to 1.3".
 std::string mean_with_interval(const Defined<MeanInterval>& interval);
+/// The mean alone where it has no interval.
+std::string mean_with_interval(const Mean& mean);
 /// "F(2, 861) = 12.3, p < 0.001, η² = 0.028".
 std::string anova_result(const Defined<Anova>& anova);
 /// "F(2, 22) = 12.3, p < 0.001; Greenhouse–Geisser ε = 0.87, p < 0.001; partial η² = 0.4".
@@ -65,5 +67,7 @@ std::string counted(std::size_t count, const std::string& noun);
 
 /// "3.438 [3.182, 3.693]" or "–", for tables.
 std::string interval_word(const Defined<MeanInterval>& interval);
+/// The mean alone where it has no interval.
+std::string interval_word(const Mean& mean);
 
 }  // namespace haptrial::analysis

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <optional>
 
 #include "analysis/force_training/report/comparison.h"
@@ -55,7 +57,8 @@ int compare(const CompareOptions& options) {
   analysis::StudyComparison comparison = analysis::compare_studies(
       analysis::read_scored_study(options.first), analysis::read_scored_study(options.second),
       options.different_scoring ? analysis::Scoring::kMayDiffer : analysis::Scoring::kSame);
-  comparison.remarks = remarks_on_definitions(options.first, options.second);
+  std::ranges::move(remarks_on_definitions(options.first, options.second),
+                    std::back_inserter(comparison.remarks));
   const std::string& out = options.out;
   for (const std::string& alarm : analysis::comparison_alarms(comparison)) {
     fmt::print("{}\n", alarm);

@@ -54,6 +54,7 @@ class Writer {
     info.rate = session.rate;
     info.start_utc = "2026-11-20T09:30:00Z";
     info.simulated = session.simulated;
+    info.session = static_cast<std::uint64_t>(session.session);
     return info;
   }
 

@@ -12,6 +12,7 @@ namespace haptrial::analysis {
 /// exactly this.
 struct SyntheticSession {
   std::string subject{"P01"};
+  int session{1};
   bool simulated{true};
   std::string clock{"simulated"};
   double rate{250.0};   // [Hz]

@@ -126,7 +126,8 @@ TEST_F(ImportChecksTest, NamesThatDifferInABlankOrACapital) {
   EXPECT_THAT(
       warnings([](int trial, Recall& r) { r.condition = trial == 1 ? "\"haptic \"" : "haptic"; }),
       ElementsAre("WARNING: the names of conditions differ only in blanks, hyphens, capitals or "
-                  "leading zeros and are taken for different conditions: \"haptic\" (5 trials), "
+                  "zeros that change no number and are taken for different conditions: \"haptic\" "
+                  "(5 trials), "
                   "\"haptic \" (1 trial)."));
   EXPECT_THAT(
       warnings([](int trial, Recall& r) { r.condition = trial == 1 ? "Haptic" : "haptic"; }),

@@ -47,7 +47,7 @@ TEST(ComparisonTest, FindsADifferenceWithinPeopleThatLiesWithinTheirSpread) {
   ASSERT_EQ(c.conditions.size(), 2u);
   EXPECT_EQ(c.conditions[0].condition, "haptic");
   EXPECT_EQ(c.conditions[0].shared, 6u);
-  EXPECT_NEAR(c.conditions[0].second->mean - c.conditions[0].first->mean, 0.2, 1e-12);
+  EXPECT_NEAR(*c.conditions[0].second.value - *c.conditions[0].first.value, 0.2, 1e-12);
   EXPECT_GT(c.conditions[0].welch->p, 0.3) << "people differ by far more";
   EXPECT_NEAR(c.conditions[1].paired->difference, 0.001 / 6.0, 1e-9);
   EXPECT_NEAR(c.conditions[1].paired->t, 1.0, 1e-6) << "one of six differs";
@@ -85,6 +85,16 @@ TEST(ComparisonTest, OnlySharedPeopleArePaired) {
       testing::StartsWith("No participant is paired. Not paired: S1, S2 (only in a); S8, S9 "
                           "(only in b)."));
   EXPECT_THAT(comparison_lines(others)[3], HasSubstr("difference between the means"));
+}
+
+TEST(ComparisonTest, OnePersonHasAMeanAndOwnConditionsAreNamed) {
+  ScoredStudy one = study("one", {"S1"}, 0.0);
+  std::erase_if(one.scores, [](const TrialScore& score) { return score.condition == "visual"; });
+  const auto lines =
+      comparison_lines(compare_studies(study("four", {"S1", "S2", "S3", "S4"}, 0.0), one));
+  EXPECT_EQ(lines[2], "Only in four, so not compared: visual.");
+  EXPECT_THAT(lines[4], HasSubstr("(1 participant)"));
+  EXPECT_THAT(lines[4], Not(HasSubstr("not defined (1 participant)")));
 }
 
 std::vector<Identity> virtual_people(const std::vector<std::string>& subjects, std::uint64_t seed) {

@@ -244,6 +244,19 @@ TEST(ScoresCsv, RecallsOfAPathHaveTwoColumnsMoreAndReadBack) {
   EXPECT_EQ(read.scores[1].kept, 0.0047);
 }
 
+TEST(ScoresCsv, TrialsOfSeveralSessionsAreToldApart) {
+  TrialScore first{"P01", "haptic", 1, 1, 1};
+  TrialScore second = first;
+  second.session = 2;
+  const std::string text = scores_csv(std::vector{first, second});
+  EXPECT_NE(text.find(",flags,session\n"), std::string::npos);
+  const ScoresTable read = read_scores_csv(text, "scores.csv");
+  ASSERT_EQ(read.scores.size(), 2u);
+  EXPECT_EQ(read.scores[0].session, 1);
+  EXPECT_EQ(read.scores[1].session, 2);
+  EXPECT_EQ(scores_csv(read.scores), text);
+}
+
 TEST(ScoresCsv, TablesOfOlderVersionsWithoutQualityAreRead) {
   const ScoresTable read = read_scores_csv(
       "subject,trial,block,repetition,condition,score,alignment_cost,rms_force,rms_slope,"

@@ -117,6 +117,28 @@ TEST_F(Study, ScoresAreThoseOfTheCurvesOfEachTrial) {
   EXPECT_THAT(study.exclusions[0].reason, HasSubstr("repeated"));
 }
 
+TEST_F(Study, BlocksOfALaterSessionFollowThoseOfTheFirst) {
+  SyntheticSession day = perfect();
+  // 0.5 N off in the first block of the first day, 3 N in the last of the second
+  day.applied = [](const std::string&, int trial, double, double target) {
+    return target + 0.5 * ((trial - 1) / 3 + 1);
+  };
+  add(day);
+  day.session = 2;
+  day.applied = [](const std::string&, int trial, double, double target) {
+    return target + 0.5 * ((trial - 1) / 3 + 4);
+  };
+  write_session(folder_ / "P01-session-2.h5", day);
+  files_.push_back(folder_ / "P01-session-2.h5");
+  const auto study = analyze_study(files_, {}, 1);
+  ASSERT_EQ(study.scores.size(), 18u);
+  for (const TrialScore& score : study.scores) {
+    EXPECT_NEAR(score.rms_unaligned, 0.5 * score.block, 0.03);
+  }
+  ASSERT_EQ(study.statistics.blocks.size(), 6u);
+  EXPECT_EQ(study.statistics.blocks.back().block, 6);
+}
+
 TEST_F(Study, TellsGoodConditionsFromBad) {
   for (const char* subject : {"P03", "P01", "P02", "P04"}) {
     add(noisy(subject));
