@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -19,6 +21,17 @@ bool leads(const std::string& name, std::size_t i, const std::string& before) {
   return name[i] == '0' && begins && i + 1 < name.size() && is_digit(name[i + 1]);
 }
 
+/// Leaves out zeros that end a decimal number: 0.10 is 0.1.
+void cut_zeros(std::string& name) {
+  const std::size_t mark = name.find('.');
+  const bool number =
+      mark != name.npos && std::ranges::count_if(name, is_digit) + 1 == std::ssize(name);
+  if (number) {
+    name.resize(name.find_last_not_of('0') + 1);
+    name.resize(name.size() - (name.back() == '.' ? 1 : 0));
+  }
+}
+
 /// The name without what is easily typed by mistake.
 std::string plain(const std::string& name) {
   std::string result;
@@ -33,6 +46,7 @@ std::string plain(const std::string& name) {
       result += static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c);
     }
   }
+  cut_zeros(result);
   return result;
 }
 
@@ -54,7 +68,8 @@ std::vector<std::vector<std::string>> alike_names(const std::vector<std::string>
 
 std::string alike_names_warning(const std::string& what, const std::vector<std::string>& shown) {
   return fmt::format(
-      "WARNING: the names of {} differ only in blanks, hyphens, capitals or leading zeros and are "
+      "WARNING: the names of {} differ only in blanks, hyphens, capitals or zeros that change no "
+      "number and are "
       "taken for different {}: {}.",
       what, what, fmt::join(shown, ", "));
 }

@@ -5,8 +5,8 @@
 
 namespace haptrial {
 
-/// A shared library that is loaded at run time: one of a vendor, which the program neither links nor
-/// ships, or one that few commands need and that takes long to load.
+/// A shared library that is loaded at run time: one of a vendor, which the program neither links
+/// nor ships, or one that few commands need and that takes long to load.
 class DynamicLibrary {
  public:
   /// @param name   a file name that the system's loader searches for ("libdhd.so.3"), or a path

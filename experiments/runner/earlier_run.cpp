@@ -25,6 +25,12 @@ std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
       {before.passes, before.responses, before.skipped, before.taken_back}, trial, last);
 }
 
+bool is_damaged(const record::Resumed& before, const PlannedTrial& trial) {
+  const auto of = [&](const record::PassRow& pass) { return protocols::is_of(pass, trial); };
+  const auto last = std::find_if(before.passes.rbegin(), before.passes.rend(), of);
+  return last != before.passes.rend() && last->status == record::PassStatus::kDamaged;
+}
+
 bool ended_with(const record::Resumed& before, const PlannedTrial& trial) {
   return !before.passes.empty() && protocols::is_of(before.passes.back(), trial);
 }

@@ -16,6 +16,9 @@ std::optional<protocols::Outcome> outcome_of(const record::Resumed& before,
                                              const protocols::PlannedTrial& trial,
                                              const record::Phase& last);
 
+/// Whether the trial's last pass lost samples.
+bool is_damaged(const record::Resumed& before, const protocols::PlannedTrial& trial);
+
 /// Whether the run ended with this trial.
 bool ended_with(const record::Resumed& before, const protocols::PlannedTrial& trial);
 

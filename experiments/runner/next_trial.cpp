@@ -25,8 +25,11 @@ std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
       return std::nullopt;
     }
     const auto before = outcome_of(earlier, *trial, p_.trials.phases().back());
-    const bool again = before && before->end == TrialEnd::kAborted &&
-                       (p_.trials.presents_aborted_again() || ended_with(earlier, *trial));
+    const bool in_any_order = p_.trials.presents_aborted_again();
+    const bool again =
+        before &&
+        ((before->end == TrialEnd::kAborted && (in_any_order || ended_with(earlier, *trial))) ||
+         (in_any_order && is_damaged(earlier, *trial)));
     if (!before || again) {
       return trial;
     }

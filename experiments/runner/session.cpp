@@ -510,7 +510,7 @@ void note_closed(const std::filesystem::path& file) {
 }  // namespace
 
 SessionSummary run_session(const SessionRequest& request) {
-  if (request.resume && close_what_had_ended(request)) {
+  if (request.resume && repair_or_close(request)) {
     SessionSummary closed;
     note_closed(request.file);
     closed.notices.push_back("the session had ended before: its file only had to be closed");

@@ -226,22 +226,17 @@ record::SessionWriter open_writer(const SessionRequest& request, const device::D
   return writer;
 }
 
-bool close_what_had_ended(const SessionRequest& request) {
+bool repair_or_close(const SessionRequest& request) {
   const std::filesystem::path& file = request.file;
   if (!record::SessionWriter::can_resume(file)) {
     return false;
   }
-  try {
-    const auto runs = record::SessionReader(file.string() + ".partial").runs();
-    if (runs.empty() || runs.back().state != record::RunState::kEnded) {
-      return false;
-    }
-  } catch (const InputError&) {
-    // The file is damaged: a resume repairs it, and says what it holds.
-  }
   record::Resumed found;
   record::SessionWriter writer = record::SessionWriter::resume(
       file, found, record::with_tables(possible_tables(request), make_channels(request).tables()));
+  if (!found.repaired.empty()) {
+    fmt::print(stderr, "{}\n", found.repaired);
+  }
   if (found.ended) {
     writer.close();
   }

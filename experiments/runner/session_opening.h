@@ -54,10 +54,11 @@ channel::ChannelSet make_channels(const SessionRequest& request);
 std::vector<std::uint64_t> next_samples(const SessionRequest& request,
                                         const channel::ChannelSet& channels);
 
-/// Gives FILE.partial its name where the session in it had come to its end: it was killed on the
-/// last steps. @returns whether it had; else nothing is changed
+/// Repairs FILE.partial where it is damaged, as trials are made from what it holds, and gives it
+/// its name where the session in it had come to its end: it was killed on the last steps.
+/// @returns whether it had
 /// @throws InputError, RunError as SessionWriter does
-bool close_what_had_ended(const SessionRequest& request);
+bool repair_or_close(const SessionRequest& request);
 
 /// The choice for each device; the last one holds for those that follow.
 std::vector<DeviceChoice> choices_of(const SessionRequest& request);

@@ -80,8 +80,7 @@ void StreamMarkers::follow(std::span<const record::Sample> samples, const record
 
 void StreamMarkers::end_pass(const record::PassRow& row) {
   if (outlet_ != nullptr && pass_ >= 0) {
-    const bool completed = row.status == record::PassStatus::kCompleted;
-    mark("pass_end", row, fmt::format("status={}", completed ? "completed" : "aborted"));
+    mark("pass_end", row, fmt::format("status={}", record::name_of(row.status)));
     pass_ = -1;
   }
 }

@@ -8,6 +8,7 @@
 #include "core/base/child_process.h"
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
+#include "core/base/shell_word.h"
 
 namespace haptrial::experiments {
 namespace {
@@ -22,20 +23,6 @@ constexpr std::chrono::seconds kToEnd(15);      // for a session that is asked t
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
-}
-
-std::string quoted(const std::string& word) {
-  const auto plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.' || c == '/' || c == '=';
-  };
-  if (!word.empty() && std::ranges::all_of(word, plain)) {
-    return word;
-  }
-  std::string out = "'";
-  for (const char c : word) {
-    out += c == '\'' ? "'\\''" : std::string(1, c);
-  }
-  return out + "'";
 }
 
 /// Runs a program until it ends or `go_on` says no; then it is killed with its group.
@@ -74,7 +61,7 @@ int run_program(const std::string& program, const CommandWords& words,
 std::string shown_command(const CommandWords& words) {
   std::string line = "haptrial";
   for (const std::string& word : words) {
-    line += " " + quoted(word);
+    line += " " + shell_word(word);
   }
   return line;
 }

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <map>
 #include <set>
 #include <tuple>
 
 #include "core/base/error.h"
+#include "core/base/shell_word.h"
 #include "core/record/hdf5/file_lock.h"
 #include "core/record/read/session_facts.h"
 #include "core/record/read/session_reader.h"
@@ -82,21 +81,6 @@ std::vector<FoundFile> found_in(const fs::path& folder, std::vector<std::string>
     }
   }
   return found;
-}
-
-/// Path as a shell takes it; between single quotes it reads nothing but those.
-std::string typed(const std::string& path) {
-  const bool plain = std::ranges::all_of(path, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c >= 0x80 || std::strchr("._/+-:=@,%", c) != nullptr;
-  });
-  if (plain) {
-    return path;
-  }
-  std::string inside;
-  for (const char c : path) {
-    inside += c == '\'' ? "'\\''" : std::string(1, c);
-  }
-  return fmt::format("'{}'", inside);
 }
 
 class RosterMaker {
@@ -223,7 +207,7 @@ class RosterMaker {
   NextCase case_of(const RosterPerson& person) const {
     if (const RosterSession* begun = person.session(person.next)) {
       const record::SessionReader reader(request_.folder / begun->file);
-      if (std::string name = record::case_in(reader); !name.empty()) {
+      if (std::string name = record::case_in(reader.events()); !name.empty()) {
         return {std::move(name), "begun"};
       }
     }
@@ -260,7 +244,8 @@ class RosterMaker {
       }
       RosterGroup& group = of(person.group);
       ++group.begun;
-      group.finished += person.next == 0 && !person.declined() ? 1 : 0;
+      const bool finished = person.next == 0 && !person.declined() && !person.is_recorded_now();
+      group.finished += finished ? 1 : 0;
       taken_.insert(person.number);
     }
   }
@@ -344,8 +329,8 @@ class RosterMaker {
       roster_.remarks.push_back(error.what());
     }
     next.session_name = d_.session_plan(next.session).name;
-    next.command =
-        fmt::format("haptrial run {} --subject {}", typed(request_.definition_file), next.subject);
+    next.command = fmt::format("haptrial run {} --subject {}", shell_word(request_.definition_file),
+                               next.subject);
     next.command += roster_.sessions > 1 ? fmt::format(" --session {}", next.session) : "";
     next.command += next.number > 0 && next.number != number_of_subject(next.subject)
                         ? fmt::format(" --participant {}", next.number)
@@ -356,10 +341,10 @@ class RosterMaker {
     next.command += led ? " --tutor FILE:TRIAL" : "";
     for (const std::string& device : newest_.devices) {
       const bool left_out = device.empty() || newest_.devices.front() == kVirtual;
-      next.command += left_out ? "" : fmt::format(" --device {}", typed(device));
+      next.command += left_out ? "" : fmt::format(" --device {}", shell_word(device));
     }
     next.command += roster_.seed != 1 ? fmt::format(" --seed {}", roster_.seed) : "";
-    next.command += fmt::format(" --out {}", typed(request_.folder.string()));
+    next.command += fmt::format(" --out {}", shell_word(request_.folder.string()));
     roster_.next.push_back(std::move(next));
   }
 
@@ -395,11 +380,13 @@ const RosterSession* RosterPerson::session(int wanted) const {
   return at != sessions.end() ? &*at : nullptr;
 }
 
-bool RosterPerson::declined() const {
-  return std::any_of(sessions.begin(), sessions.end(), [](const RosterSession& each) {
-    return each.state == SessionState::kDeclined;
-  });
+static bool has_one(const RosterPerson& person, SessionState state) {
+  return std::ranges::find(person.sessions, state, &RosterSession::state) != person.sessions.end();
 }
+
+bool RosterPerson::is_recorded_now() const { return has_one(*this, SessionState::kRunning); }
+
+bool RosterPerson::declined() const { return has_one(*this, SessionState::kDeclined); }
 
 bool RosterPerson::never_took_part() const {
   return declined() && std::all_of(sessions.begin(), sessions.end(),

@@ -41,6 +41,7 @@ struct RosterPerson {
   NextCase next_case;                   // of it
 
   const RosterSession* session(int number) const;
+  bool is_recorded_now() const;
   /// Did not consent, so nothing more is to be run.
   bool declined() const;
   /// Declined before any trial was done, so the number is free again.

@@ -10,6 +10,19 @@ bool is_of(const record::PassRow& pass, const PlannedTrial& trial) {
          pass.condition == trial.condition;
 }
 
+namespace {
+
+/// Whether a pass that has lost samples since was completed, and other trials followed from it.
+bool counted_when_recorded(std::span<const record::PassRow> passes, std::size_t i) {
+  const auto later = passes.subspan(i + 1);
+  return passes[i].status == record::PassStatus::kDamaged &&
+         std::ranges::any_of(later, [&](const record::PassRow& pass) {
+           return pass.trial != passes[i].trial || pass.practice != passes[i].practice;
+         });
+}
+
+}  // namespace
+
 std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const PlannedTrial& trial,
                                         const record::Phase& last) {
   std::optional<Outcome> found;
@@ -23,7 +36,8 @@ std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const Pl
     const record::PassRow& pass = recorded.passes[i];
     const bool taken_back = std::ranges::any_of(
         recorded.taken_back, [i](const auto& row) { return std::cmp_equal(row.pass, i); });
-    const bool done = pass.phase == last && pass.status == record::PassStatus::kCompleted;
+    const bool done = pass.phase == last && (pass.status == record::PassStatus::kCompleted ||
+                                             counted_when_recorded(recorded.passes, i));
     const bool counts =
         !found || found->end == TrialEnd::kAborted || (found->end == TrialEnd::kSkipped && done);
     if (taken_back || !is_of(pass, trial) || !counts) {

@@ -41,7 +41,8 @@ struct RecordedTrials {
 bool is_of(const record::PassRow& pass, const PlannedTrial& trial);
 
 /// Outcome of a trial that an earlier run, or the session that is replayed, presented; nothing if
-/// it did not. The responses are those of the attempt that counts.
+/// it did not. The responses are those of the attempt that counts. A damaged pass that other trials
+/// followed was completed, as they depend on its answer.
 /// @param last  the phase with which a trial is done
 std::optional<Outcome> recorded_outcome(const RecordedTrials& recorded, const PlannedTrial& trial,
                                         const record::Phase& last);

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/file_text.h"
+#include "core/record/hdf5/file_lock.h"
 #include "tests/experiments/command.h"
 #include "tests/support/temporary_folder.h"
 
@@ -73,6 +74,18 @@ TEST_F(NextCommandTest, ADecidedStudyAsksForNobody) {
   EXPECT_THAT(run("analyze out").output,
               HasSubstr("Mean reaction time. When the study ends: congruent < incongruent, after"));
   EXPECT_THAT(file_text(folder_ / "out/results.json"), HasSubstr("\"most_participants\": 12"));
+}
+
+TEST_F(NextCommandTest, WhoIsBeingRecordedIsNotDone) {
+  ASSERT_EQ(run("set crossmodal_congruency.toml design.participants 2").status, 0);
+  rehearse(2);
+  EXPECT_THAT(next().output, HasSubstr("every planned participant has had every session"));
+  fs::rename(folder_ / "out/S02.h5", folder_ / "out/S02.h5.partial");
+  const auto recording = record::FileLock::take(folder_ / "out/S02.h5.partial", false);
+  EXPECT_THAT(next().output, HasSubstr("S02 is being recorded; nobody else is next"));
+  EXPECT_THAT(run("roster crossmodal_congruency.toml out").output,
+              testing::AllOf(HasSubstr("2 of 2 participants begun, 1 with their session"),
+                             HasSubstr("S02 is being recorded; nobody else is next")));
 }
 
 /// Five people come on two days; the fifth has had the first day alone.

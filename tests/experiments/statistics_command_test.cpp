@@ -138,9 +138,11 @@ TEST_F(StatisticsCommandTest, WarnsOfLevelsThatDifferOnlyInCapitals) {
                                  "B,haptic,4\nC,visual,2\nC,haptic,5\n");
   const CommandResult run =
       run_command("haptrial statistics " + table + " --seed 18446744073709551615");
-  EXPECT_THAT(run.errors, HasSubstr("WARNING: the names of levels of condition differ only in "
-                                    "blanks, hyphens, capitals or leading zeros and are taken for "
-                                    "different levels of condition: \"Visual\", \"visual\"."));
+  EXPECT_THAT(
+      run.errors,
+      HasSubstr("WARNING: the names of levels of condition differ only in "
+                "blanks, hyphens, capitals or zeros that change no number and are taken for "
+                "different levels of condition: \"Visual\", \"visual\"."));
   const std::string people = file("people.csv",
                                   "subject,condition,score\nA,x,1\nA,y,2\nb1,x,3\nB01,y,4\n"
                                   "C,x,2\nC,y,5\nD,x,1\nD,y,3\n");

@@ -108,6 +108,19 @@ std::string lie_of(const Pose& pose) {
                            : "";
 }
 
+/// A warning about places of the patient's frame in a bone that keeps its own axes: those that come
+/// with the volume are turned with it, and later ones are not.
+void note_turn(const UprightVolume& volume, BoneModel& model) {
+  const Pose pose = pose_of(volume);
+  if (keeps_axes(pose) && pose.off > kSmallShift * volume.steps.colwise().norm().minCoeff()) {
+    model.notes.push_back(fmt::format(
+        "its axes, turned by {:.2f} degrees, are kept as the patient's: what is added to it after "
+        "it was saved, and what is exported of it, lies up to {:.2g} mm beside the scan; add "
+        "structures in the same import",
+        pose.turn / kDegree, 1e3 * pose.off));
+  }
+}
+
 /// How a volume becomes cubes.
 struct Plan {
   geometry::VoxelGrid grid;
@@ -478,6 +491,7 @@ BoneModel load_bone(const fs::path& file, const LoadOptions& options,
                                                   : grey_bone(job, head, volume);
   model.name = saved != head.keys.end() ? saved->second : file.filename().string();
   model.notes.insert(model.notes.begin(), head.notes.begin(), head.notes.end());
+  note_turn(volume, model);
   add_structures(job, patient_frame(volume), model);
   join_equal_names(model);
   leave_out(job, model);

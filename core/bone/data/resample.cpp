@@ -337,6 +337,8 @@ Pose pose_of(const UprightVolume& volume) {
       1.0, std::max({std::abs(cosines(0, 1)), std::abs(cosines(0, 2)), std::abs(cosines(1, 2))})));
   pose.shape = corner_shift(volume, spacing * axes) / spacing;
   pose.skew = corner_shift(volume, axes * edges.asDiagonal()) / edges.minCoeff();
+  constexpr double kFromTheFirstVoxel = 2.0;  // which keeps its place; else it is from the middle
+  pose.off = kFromTheFirstVoxel * corner_shift(volume, edges.asDiagonal());
   return pose;
 }
 

@@ -26,6 +26,7 @@ struct Pose {
   double slant{0.0};  // how far two of its own are from a right angle at most [rad]
   double shape{0.0};  // how far a corner of it lies from where cubes would put it, in voxels
   double skew{0.0};   // how far from where axes at right angles would put it, in voxels
+  double off{0.0};    // how far, once its axes are taken for the patient's, from its own place [m]
 };
 Pose pose_of(const UprightVolume& volume);
 

@@ -81,9 +81,8 @@ void check_ranges(const std::vector<PassRow>& passes, bool imported, Integrity& 
     const PassRow& pass = passes[i];
     const std::string range = "pass " + number(std::uint64_t{i}) + " has samples " +
                               number(pass.first_sample) + " to " + number(pass.last_sample);
-    if (pass.status == PassStatus::kAborted) {
-      ++result.aborted;
-    }
+    result.aborted += pass.status == PassStatus::kAborted ? 1 : 0;
+    result.damaged += pass.status == PassStatus::kDamaged ? 1 : 0;
     if (pass.practice) {
       ++result.practice;
     }

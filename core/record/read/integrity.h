@@ -17,6 +17,7 @@ struct Integrity {
   std::uint64_t last_sequence{0};
   std::uint64_t passes{0};
   std::uint64_t aborted{0};   // passes among them; no problem in itself
+  std::uint64_t damaged{0};   // passes among them that a repair found without all of their samples
   std::uint64_t practice{0};  // passes among them
   std::uint64_t overruns{0};  // late ticks; no problem in itself
   std::uint64_t dropped{0};

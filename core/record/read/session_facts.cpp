@@ -134,13 +134,9 @@ bool is_mirrored(const SessionReader& reader) {
                              [](const EventRow& event) { return event.kind == kMirroredEvent; });
 }
 
-std::string case_in(const SessionReader& reader) {
-  for (EventRow& event : reader.events()) {
-    if (event.kind == kCaseEvent) {
-      return std::move(event.text);
-    }
-  }
-  return "";
+std::string case_in(const std::vector<EventRow>& events) {
+  const auto at = std::ranges::find(events, kCaseEvent, &EventRow::kind);
+  return at != events.end() ? at->text : "";
 }
 
 std::vector<SkippedRow> skipped_trials(const SessionReader& reader) {

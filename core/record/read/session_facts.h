@@ -33,8 +33,9 @@ bool is_mirrored(const SessionReader& reader);
 /// Kind of the event of a run of a curriculum's session: its case.
 inline constexpr const char* kCaseEvent = "case";
 
-/// The case that a session is of; empty: it has none, or a version before 0.3 recorded it.
-std::string case_in(const SessionReader& reader);
+/// The case that a session is of, by its events; empty: it has none, or a version before 0.3
+/// recorded it.
+std::string case_in(const std::vector<EventRow>& events);
 
 /// "812 of 950 ticks (85.5 %) overran their period" where more than one tick in a hundred did. Each
 /// gives its force late; beyond that share the readings from which velocity is estimated are no

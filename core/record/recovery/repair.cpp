@@ -123,7 +123,8 @@ class Plan {
     for (const BegunRow& begun : rows_.begun) {
       known[begun.row] = begun.pass;
     }
-    std::int32_t end = 0;  // behind the last whole pass: what follows is open
+    std::int32_t end =
+        0;  // behind the last pass that is whole or was followed: what follows is open
     std::map<std::int32_t, bool> whole;
     for (std::size_t i = 0; i < rows_.passes.size(); ++i) {
       const PassRow& row = rows_.passes[i];
@@ -133,7 +134,8 @@ class Plan {
       whole[number] = row.first_sample <= row.last_sample && at != seen.end() &&
                       at->second.count == row.last_sample - row.first_sample + 1;
       dropped_passes_ += whole[number] ? 0 : 1;
-      if (whole[number]) {
+      const bool followed = !each_tick_ && !seen.empty() && seen.rbegin()->first > number;
+      if (whole[number] || followed) {
         end = std::max(end, number + 1);
       }
     }
@@ -144,7 +146,7 @@ class Plan {
         const std::uint64_t next = passes_.empty() ? 0 : passes_.back().last_sample + 1;
         row.first_sample = at != seen.end() ? at->second.first : next;
         row.last_sample = at != seen.end() ? at->second.last : next;
-        row.status = PassStatus::kAborted;
+        row.status = row.status == PassStatus::kCompleted ? PassStatus::kDamaged : row.status;
       }
       passes_.push_back(row);
     }
@@ -312,7 +314,8 @@ TableList without_unknown(const fs::path& partial, const TableList& tables) {
 
 }  // namespace
 
-std::optional<std::string> what_is_wrong(const fs::path& partial, const TableList& tables) {
+std::optional<std::string> what_is_wrong(const fs::path& partial, const TableList& tables,
+                                         const TableList& needed) {
   const std::vector<std::uint8_t> bytes = contents_of(partial);
   try {
     const SessionReader reader(partial);
@@ -328,6 +331,11 @@ std::optional<std::string> what_is_wrong(const fs::path& partial, const TableLis
       if (held > table.rows) {
         return fmt::format("it holds {} rows of /{}, but its structure points to {}", held,
                            table.name, table.rows);
+      }
+    }
+    for (const TableDescription* table : needed) {
+      if (table->of() != RowsOf::kEachTick && !reader.has(*table)) {
+        return fmt::format("it has no /{}", table->name());
       }
     }
     return wrong_between_rows(reader, tables);
@@ -359,7 +367,7 @@ Repair repair_session(const fs::path& partial, const std::string& wrong, const T
     repair.dropped_rows = rows.counts.at(samples_table().schema().name) - written.samples;
     repair.told = fmt::format(
         "{} was damaged ({}); kept: {} samples ({} missing between them), {} passes ({} "
-        "incomplete, which count as aborted or open), {} events, {} rows of /samples dropped; the "
+        "incomplete, which count as damaged or open), {} events, {} rows of /samples dropped; the "
         "original is kept as {}",
         partial.filename().string(), wrong, written.samples, written.missing, rows.passes.size(),
         plan.dropped_passes(), rows.events.size(), repair.dropped_rows,

@@ -10,6 +10,7 @@
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
 #include "core/record/recovery/repair.h"
+#include "core/record/recovery/rewrite.h"
 
 namespace haptrial::record {
 namespace {
@@ -84,6 +85,21 @@ Resumed examine(const SessionReader& reader) {
 
 }  // namespace
 
+Unfinished read_unfinished(const fs::path& partial) {
+  try {
+    const SessionReader reader(partial);
+    return {reader.info(), reader.events()};
+  } catch (const InputError&) {
+    const std::vector<std::uint8_t> bytes = contents_of(partial);
+    const RecoveredRows rows = rows_in(partial, bytes, {});
+    const auto info = find_info(partial, rows);
+    if (!info) {
+      throw;
+    }
+    return {*info, rows.events};
+  }
+}
+
 bool SessionWriter::can_resume(const fs::path& final_path) {
   std::error_code ignored;
   if (fs::exists(final_path, ignored)) {
@@ -103,7 +119,7 @@ SessionWriter SessionWriter::resume(const fs::path& final_path, Resumed& found,
   }
   FileLock lock = FileLock::take(partial, false);
   Repair repair;
-  if (const auto wrong = what_is_wrong(partial, tables)) {
+  if (const auto wrong = what_is_wrong(partial, tables, needed)) {
     repair = repair_session(partial, *wrong, tables, needed);
     lock = FileLock::take(partial, false);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -40,5 +41,17 @@ struct Resumed {
   std::uint64_t dropped_passes{0};  // rows of /trials whose samples were not all there
   bool ended{false};                // the counts are there: only close() is left to do
 };
+
+/// Facts of an unfinished session that are asked for before it is gone on with.
+struct Unfinished {
+  SessionInfo info;
+  std::vector<EventRow> events;
+};
+
+/// Reads them and changes nothing. Where the structure of the file is damaged, they are of the rows
+/// that it still holds, as after the repair by SessionWriter::resume().
+/// For a program with one thread.
+/// @throws InputError when the file does not say what the session was
+Unfinished read_unfinished(const std::filesystem::path& partial);
 
 }  // namespace haptrial::record

@@ -67,7 +67,7 @@ EnumText stages() {
 
 EnumText statuses() {
   return EnumText(
-      {entry(PassStatus::kCompleted, "completed"), entry(PassStatus::kAborted, "aborted")});
+      {entry(PassStatus::kCompleted), entry(PassStatus::kAborted), entry(PassStatus::kDamaged)});
 }
 
 EnumText states() {
@@ -139,7 +139,9 @@ const Table<PassRow>& trials_table() {
                  "sequence number of the first sample, inclusive"),
        T::column("last_sample", &R::last_sample, "1",
                  "sequence number of the last sample, inclusive"),
-       T::word("status", &R::status, kStatusBytes, statuses(), "completed or aborted"),
+       T::word(
+           "status", &R::status, kStatusBytes, statuses(),
+           "completed, aborted, or damaged: completed, but samples of it were lost with the file"),
        T::since(2, T::column("practice", &R::practice, "1",
                              "1 where the pass is not part of the study")),
        T::since(

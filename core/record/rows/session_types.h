@@ -56,7 +56,22 @@ inline constexpr Phase Phase::kTest{"test"};
 
 constexpr const char* name_of(const Phase& phase) noexcept { return phase.name(); }
 
-enum class PassStatus : std::uint8_t { kCompleted, kAborted };
+/// A completed pass of which samples were lost with the file's chunks is damaged: what it answered
+/// has had its effect, and its samples are not to be analysed.
+enum class PassStatus : std::uint8_t { kCompleted, kAborted, kDamaged };
+
+/// Word of a status in /trials.
+constexpr const char* name_of(PassStatus status) noexcept {
+  switch (status) {
+    case PassStatus::kAborted:
+      return "aborted";
+    case PassStatus::kDamaged:
+      return "damaged";
+    case PassStatus::kCompleted:
+      break;
+  }
+  return "completed";
+}
 
 /// One pass, a row of /trials. A trial has a pass of each phase of its protocol, and more if it was
 /// broken off and went on.

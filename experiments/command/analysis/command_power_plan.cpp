@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "core/base/shell_word.h"
 #include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/subcommand.h"
@@ -62,15 +63,6 @@ void print_bundling(const PowerQuestion& question, std::size_t parts, double eac
       each, static_cast<int>(std::min(minute, static_cast<double>(most))));
 }
 
-/// In single quotes, as a shell takes it.
-std::string quoted(const std::string& text) {
-  std::string all = "'";
-  for (const char c : text) {
-    all += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  }
-  return all + "'";
-}
-
 int power_plan(const PowerPlanOptions& options) {
   const int tasks = checked_number("--tasks", options.tasks, 1, 10'000);
   const double hours = checked_real("--hours", options.hours, 0.05, 1000.0);
@@ -100,7 +92,7 @@ int power_plan(const PowerPlanOptions& options) {
           "exec haptrial power simulate {} --out {} --part $SLURM_ARRAY_TASK_ID/{} --jobs 1 "
           "--minutes {:g}\n",
           units.size(), each, all / 3600.0, tasks, minutes, megabytes_of_a_task(),
-          quoted(options.question), quoted(options.out), tasks, work));
+          shell_word(options.question), shell_word(options.out), tasks, work));
   fmt::print(
       "{} parts of about {:.2g} s, {:.2g} hours of computing, {:.2g} minutes for each of {} "
       "tasks\n",

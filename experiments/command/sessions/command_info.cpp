@@ -154,7 +154,8 @@ int info(const std::string& file) {
   fmt::print("clock       {}, {} Hz\n", i.clock, i.rate);
   fmt::print("rows        {}, sequence {} to {}, {} gaps\n", integrity.rows,
              integrity.first_sequence, integrity.last_sequence, integrity.gaps);
-  fmt::print("passes      {}, {} aborted, {} for practice\n", integrity.passes, integrity.aborted,
+  fmt::print("passes      {}, {} aborted, {}{} for practice\n", integrity.passes, integrity.aborted,
+             integrity.damaged > 0 ? fmt::format("{} damaged, ", integrity.damaged) : "",
              integrity.practice);
   print_loop(reader);
   print_frames(reader.frames());

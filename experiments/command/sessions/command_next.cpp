@@ -34,8 +34,8 @@ int next(const NextOptions& options) {
   if (!next.empty()) {
     fmt::print("next: {}\n      {}\n", words_of(next.front(), roster.sessions),
                next.front().command);
-  } else if (!has_ended(result)) {
-    fmt::print("every planned participant has had every session\n");
+  } else {
+    fmt::print("{}\n", words_without_next(roster, result));
   }
   return 0;
 }

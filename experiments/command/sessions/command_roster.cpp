@@ -168,8 +168,7 @@ void print_roster(const Roster& roster, const std::optional<analysis::Sequential
                words_of(next, roster.sessions), next.command);
   }
   if (all.empty()) {
-    fmt::print("{}\n", has_ended(standing) ? "nobody is next"
-                                           : "every planned participant has had every session");
+    fmt::print("{}\n", words_without_next(roster, standing));
   }
 }
 

@@ -16,7 +16,7 @@
 #include "core/device/registered_devices.h"
 #include "core/record/hdf5/session_target.h"
 #include "core/record/read/session_facts.h"
-#include "core/record/read/session_reader.h"
+#include "core/record/recovery/session_resume.h"
 #include "core/stream/lsl_outlet.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/meet_partner.h"
@@ -156,7 +156,7 @@ std::string handedness_of(const RunOptions& options, const fs::path& file) {
   if (!options.resume || !options.person.handedness.empty()) {
     return options.person.handedness;
   }
-  return record::SessionReader(record::partial_path(file)).info().participant.handedness;
+  return record::read_unfinished(record::partial_path(file)).info.participant.handedness;
 }
 
 /// A virtual participant has no better hand, and a recording's was mirrored when it was recorded.

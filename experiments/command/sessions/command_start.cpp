@@ -21,6 +21,7 @@
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
 #include "core/base/exception_words.h"
+#include "core/base/shell_word.h"
 #include "core/base/whole_file.h"
 #include "core/sound/card_player.h"
 #include "experiments/command/sessions/confirmation.h"
@@ -102,12 +103,13 @@ void add_help(const protocols::Room& room, Document& page) {
 std::string options_of_session(const RunOptions& options) {
   std::string words;
   for (const std::string& device : options.devices) {
-    words += " --device " + device;
+    words += " --device " + shell_word(device);
   }
+  words += options.pilot ? " --pilot" : "";
   words += options.window ? " --window" : "";
   words += options.console ? " --console" : "";
   words += options.keyboard ? " --keyboard" : "";
-  words += options.out.empty() ? "" : " --out " + options.out;
+  words += options.out.empty() ? "" : " --out " + shell_word(options.out);
   return words;
 }
 
@@ -120,8 +122,8 @@ void add_files(const RunOptions& options, const Definition& d, Document& page) {
        {"Stopped", "the same with .partial: do not rename, move or open it"},
        {"Backup", backup.empty() ? "none is made: copy the file by hand"
                                  : (fs::path(backup) / d.name / "ID.h5").string()},
-       {"To go on", fmt::format("haptrial run {}{} --subject ID --resume", options.definition,
-                                options_of_session(options))}});
+       {"To go on", fmt::format("haptrial run {}{} --subject ID --resume",
+                                shell_word(options.definition), options_of_session(options))}});
 }
 
 Document card_of(const RunOptions& options, const Experiment& experiment, bool terminal) {
@@ -267,7 +269,7 @@ void print_next(const StartOptions& options, const RunEnd& end) {
   fmt::print(
       "next: haptrial info {} says whether every tick is recorded\n"
       "      haptrial start {} leads through the session of whoever comes next\n",
-      end.file.string(), options.definition);
+      shell_word(end.file.string()), shell_word(options.definition));
 }
 
 int start(const StartOptions& asked) {

@@ -13,7 +13,7 @@
 #include "core/record/hdf5/session_target.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_facts.h"
-#include "core/record/read/session_reader.h"
+#include "core/record/recovery/session_resume.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/run_checks.h"
@@ -225,9 +225,10 @@ void check_place(const RunOptions& options, const protocols::Definition& d, bool
 /// A session goes on with its own case, whatever would come next by now.
 void keep_case(RunOptions& options, const protocols::Definition& d, const std::string& asked) {
   const std::filesystem::path file = session_file(options, d);
-  const std::string own = record::SessionWriter::can_resume(file)
-                              ? record::case_in(record::SessionReader(record::partial_path(file)))
-                              : "";
+  const std::string own =
+      record::SessionWriter::can_resume(file)
+          ? record::case_in(record::read_unfinished(record::partial_path(file)).events)
+          : "";
   if (own.empty()) {
     return;
   }
@@ -289,6 +290,21 @@ std::vector<RosterNext> next_sessions(const Roster& roster,
     std::erase_if(next, [](const RosterNext& each) { return each.fresh; });
   }
   return next;
+}
+
+std::string words_without_next(const Roster& roster,
+                               const std::optional<analysis::SequentialResult>& standing) {
+  std::vector<std::string> running;
+  for (const RosterPerson& person : roster.persons) {
+    if (person.is_recorded_now() && !person.pilot) {
+      running.push_back(person.subject);
+    }
+  }
+  if (!running.empty()) {
+    return fmt::format("{} {} being recorded; nobody else is next", fmt::join(running, ", "),
+                       running.size() == 1 ? "is" : "are");
+  }
+  return has_ended(standing) ? "nobody is next" : "every planned participant has had every session";
 }
 
 }  // namespace haptrial::experiments

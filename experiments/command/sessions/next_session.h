@@ -39,4 +39,8 @@ bool has_ended(const std::optional<analysis::SequentialResult>& standing);
 std::vector<RosterNext> next_sessions(const Roster& roster,
                                       const std::optional<analysis::SequentialResult>& standing);
 
+/// A sentence for a study of which next_sessions() has none.
+std::string words_without_next(const Roster& roster,
+                               const std::optional<analysis::SequentialResult>& standing);
+
 }  // namespace haptrial::experiments

@@ -14,6 +14,7 @@
 #include "core/record/hdf5/session_target.h"
 #include "core/record/hdf5/session_writer.h"
 #include "core/record/read/session_reader.h"
+#include "core/record/recovery/session_resume.h"
 #include "experiments/command/arguments.h"
 #include "experiments/runner/devices.h"
 #include "experiments/studies/registry.h"
@@ -247,7 +248,7 @@ std::string session_seed(const RunOptions& options, const fs::path& own) {
     return options.seed;
   }
   if (options.resume && record::SessionWriter::can_resume(own)) {
-    return fmt::to_string(record::SessionReader(record::partial_path(own)).info().seed);
+    return fmt::to_string(record::read_unfinished(record::partial_path(own)).info.seed);
   }
   const std::vector<EarlierSession> earlier = earlier_sessions(options.out, options.pilot, own);
   return options.pilot || earlier.empty() ? "1" : fmt::to_string(earlier.front().info.seed);
@@ -258,7 +259,7 @@ std::string begun_language(const RunOptions& options, const protocols::Definitio
   std::string language;
   if (options.resume && options.language.empty() && record::SessionWriter::can_resume(own)) {
     for (const record::EventRow& event :
-         record::SessionReader(record::partial_path(own)).events()) {
+         record::read_unfinished(record::partial_path(own)).events) {
       language = event.kind == protocols::kLanguageEvent ? event.text : language;
     }
   }
@@ -269,7 +270,7 @@ std::optional<int> recorded_number(const RunOptions& options, const fs::path& ow
   std::vector<EarlierSession> sessions = earlier_sessions(options.out, options.pilot, own);
   if (options.resume && record::SessionWriter::can_resume(own)) {
     const fs::path partial = record::partial_path(own);
-    sessions.insert(sessions.begin(), {partial, record::SessionReader(partial).info()});
+    sessions.insert(sessions.begin(), {partial, record::read_unfinished(partial).info});
   }
   const auto at = std::ranges::find_if(sessions, [&](const EarlierSession& each) {
     return each.info.subject == options.subject && recorded_number(each.info);

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "core/base/alike_names.h"
+#include "core/base/shell_word.h"
 #include "core/base/short_numbers.h"
 #include "core/base/stated_words.h"
 #include "core/base/utf8.h"
@@ -20,6 +22,19 @@ TEST(ShortNumbersTest, NumbersHaveFourDigitsAndWordsStayAsTheyAre) {
   EXPECT_EQ(short_numbers(""), "");
 }
 
+TEST(ShellWordTest, AShellReadsTheWordBack) {
+  EXPECT_EQ(shell_word("out/ä.toml"), "out/ä.toml");
+  for (const std::string word : {"", "it's mine", "a b$HOME`x`\\", "~", "*"}) {
+    const std::string read = "printf %s " + shell_word(word);
+    FILE* pipe = ::popen(read.c_str(), "r");
+    ASSERT_NE(pipe, nullptr);
+    std::string back(64, '\0');
+    back.resize(std::fread(back.data(), 1, back.size(), pipe));
+    ::pclose(pipe);
+    EXPECT_EQ(back, word);
+  }
+}
+
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
@@ -30,6 +45,8 @@ TEST(AlikeNamesTest, FindsWhatATypoMayHaveMade) {
                                    ElementsAre("no-guide", "no guide", "No_Guide")));
   EXPECT_THAT(alike_names({"1", "P00", "01", "P0", "p0"}),
               UnorderedElementsAre(ElementsAre("1", "01"), ElementsAre("P00", "P0", "p0")));
+  EXPECT_THAT(alike_names({"0.1", "0.10", "0.2", "2", "2.0"}),
+              UnorderedElementsAre(ElementsAre("0.1", "0.10"), ElementsAre("2", "2.0")));
   EXPECT_THAT(alike_names({"a\u00a0b", "ab"}), UnorderedElementsAre(ElementsAre("a\u00a0b", "ab")));
 }
 
@@ -40,10 +57,12 @@ TEST(AlikeNamesTest, LeavesDifferentNamesAlone) {
 }
 
 TEST(AlikeNamesTest, WarningsQuoteTheNames) {
-  EXPECT_THAT(alike_names_warnings("participants", {"P1", "P2", "p01"}),
-              ElementsAre("WARNING: the names of participants differ only in blanks, hyphens, "
-                          "capitals or leading zeros and are taken for different participants: "
-                          "\"P1\", \"p01\"."));
+  EXPECT_THAT(
+      alike_names_warnings("participants", {"P1", "P2", "p01"}),
+      ElementsAre(
+          "WARNING: the names of participants differ only in blanks, hyphens, "
+          "capitals or zeros that change no number and are taken for different participants: "
+          "\"P1\", \"p01\"."));
 }
 
 TEST(StatedWordsTest, AWordIsAWholeOne) {

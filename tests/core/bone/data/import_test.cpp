@@ -166,6 +166,9 @@ TEST_F(ImportTest, ASmallTurnIsKeptAndALargeOneResampled) {
   const BoneModel kept = load("a.nrrd", nrrd_of(little));
   EXPECT_TRUE(std::ranges::equal(kept.labels, little.values));
   EXPECT_THAT(kept.source, HasSubstr("turned by 0.90 degrees, whose axes are kept"));
+  // 2 sin(0.45°) of the farthest distance of two corners from an axis along (1, 2, 3)
+  ASSERT_EQ(kept.notes.size(), 1U);
+  EXPECT_THAT(kept.notes[0], HasSubstr("lies up to 0.53 mm beside the scan"));
   for (const double degrees : {1.1, 20.0, 44.0, 70.0}) {
     const BoneSummary summary = summary_of(load("b.nrrd", nrrd_of(turned(degrees))));
     const double exact = 4.0 / 3.0 * std::numbers::pi * 343.0;
