@@ -1,6 +1,8 @@
 #include "core/scene/push.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -64,6 +66,9 @@ Measured::Measured(const MeasuredParameters& parameters, const Setting& setting)
     : parameters_(parameters),
       value_(parameters.zero),
       most_change_(1.0 / (kComesAndGoes * setting.rate)),
+      most_step_(parameters.stimulus || parameters.gain.isZero(0.0)
+                     ? std::numeric_limits<double>::infinity()
+                     : setting.limit * most_change_ / parameters.gain.norm()),
       slow_(kAlternates, setting.rate) {
   require(std::isfinite(parameters.zero), "Measured: zero must be finite");
   require(parameters.gain.allFinite(), "Measured: gain must be finite");
@@ -79,11 +84,12 @@ void Measured::adopt(const Measured& before) noexcept {
 Vector3d Measured::force(const Felt& felt, FieldState& state) noexcept {
   const std::size_t at = parameters_.channel;
   const bool there = at < felt.channels.size() && std::isfinite(felt.channels[at]);
-  if (there) {
-    value_ = felt.channels[at];
-  }
   const double wanted = there ? 1.0 : 0.0;
   const bool begins = !std::exchange(begun_, true);
+  if (there) {
+    const double change = felt.channels[at] - value_;
+    value_ += begins ? change : std::clamp(change, -most_step_, most_step_);
+  }
   share_ += begins ? wanted : std::clamp(wanted - share_, -most_change_, most_change_);
   const Vector3d force = share_ * (value_ - parameters_.zero) * parameters_.gain;
   if (begins) {

@@ -91,7 +91,9 @@ struct MeasuredParameters {
 };
 
 /// f = w gain (x - zero), where x is the newest value of a channel. While there is none, w goes to
-/// 0 over 50 ms, and back to 1 when there is one again. Active.
+/// 0 over 50 ms, and back to 1 when there is one again. Where it is no stimulus, x follows the
+/// channel so that the force takes at least 50 ms for its limit: values that come slowly, or again
+/// after a silence, or are wrong for once, make no steps. Active.
 class Measured {
  public:
   Measured(const MeasuredParameters& parameters, const Setting& setting);
@@ -104,6 +106,7 @@ class Measured {
   double value_;
   double share_{0.0};   // w
   double most_change_;  // of w in a tick
+  double most_step_;    // of the value in a tick
   bool begun_{false};
   LowPass slow_;  // of the force
 };

@@ -178,7 +178,8 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
       reading.shares.stiffness * (done.force + done.shaft + done.pushed + kept_out) + shake;
   out.most = parameters_.force_limit;
   out.force = control::saturate(wanted, out.most);
-  out.intent.push = reading.shares.stiffness * done.drag + shake;
+  // One hand works on the other, which is no energy that the program makes.
+  out.intent.push = reading.shares.stiffness * (done.drag + done.pushed) + shake;
   out.intent.stimulus = shake;
   out.goes_over = other_touch;
   out.saturated = wanted.norm() > out.most;
@@ -200,6 +201,7 @@ PassOutput DrillingPass::tick(const Readings& readings, double dt) noexcept {
         readings[1].shares.stiffness * (done.tube.force + done.tube.shaft - done.pushed);
     second_.most = parameters_.second->force_limit;
     second_.force = control::saturate(on_tube, second_.most);
+    second_.intent.push = -readings[1].shares.stiffness * done.pushed;
     second_.goes_over = other_touch;
     rows_.log_second(input.tube);
   }

@@ -57,6 +57,13 @@ void ToolContact::wait() noexcept {
   sides_.fill(Eigen::Vector3d::Zero());
 }
 
+/// The depth that pushes back. A hand that presses on through both axes is let go by degrees, over
+/// as far as it took to reach them.
+static double pushing_depth(double depth, double reach) noexcept {
+  const double beyond = std::clamp((depth - reach) / reach, 0.0, 1.0);
+  return depth * (1.0 - beyond * beyond * (3.0 - 2.0 * beyond));
+}
+
 ToolContact::Deepest ToolContact::deepest(std::span<const Rod> tool, const Rod& other) noexcept {
   Deepest found;
   for (std::size_t i = 0; i < std::min(tool.size(), kMost); ++i) {
@@ -69,8 +76,9 @@ ToolContact::Deepest ToolContact::deepest(std::span<const Rod> tool, const Rod& 
     const double depth = reach - apart.between_axes;
     const bool meet = depth > 0.0 && depth < 2.0 * reach;
     side = meet ? apart.normal : Eigen::Vector3d::Zero();
-    if (meet && depth > found.depth) {
-      found = {depth, apart.normal};
+    const double pushing = meet ? pushing_depth(depth, reach) : 0.0;
+    if (pushing > found.depth) {
+      found = {pushing, apart.normal};
     }
   }
   return found;

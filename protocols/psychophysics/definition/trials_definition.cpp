@@ -233,6 +233,12 @@ std::vector<std::string> TrialsDefinition::warnings() const {
           ramp));
     }
   }
+  if (mirror_left_handed && !channels.empty()) {
+    all.push_back(
+        "what channels say is not mirrored for left-handed participants "
+        "(design.mirror_left_handed): a force or place along x has the other sign for them than for "
+        "right-handed ones, in stages, measures and tables");
+  }
   for (const TrialQuestion& question : questions) {
     const bool tells = question.has_limits() || question.feedback != Feedback::kNever;
     if (tells && feedback_time == 0.0) {

@@ -145,6 +145,13 @@ TEST(PushTest, AMeasuredValueIsFollowedAndAMissingOneGivesNoForce) {
   EXPECT_EQ(measured.force(felt, state), Vector3d(0.0, 6.0, 0.0));
   const std::array<double, 2> others{9.0, 0.5};
   felt.channels = others;
+  double before = 6.0;
+  for (int i = 0; i < 40;
+       ++i) {  // 10 N, its limit, in 50 ms: the value jumps, and the force does not
+    const double force = measured.force(felt, state).y();
+    ASSERT_LE(before - force, 10.0 / (0.05 * kRate) + 1e-12);
+    before = force;
+  }
   EXPECT_EQ(measured.force(felt, state), Vector3d::Zero());
   EXPECT_EQ(state.stimulus, Vector3d::Zero());
   Measured without({2, 0.5, {0.0, 4.0, 0.0}}, kSetting);

@@ -178,14 +178,22 @@ TEST(ToolContactTest, ToolsThatMeetLoseEnergyAlsoInTicks) {
   EXPECT_GT(bounced(0.1, 0.0, 0.0), 1.05);    // as it would by being held for a tick
 }
 
-TEST(ToolContactTest, ToolsThatCrossArePushedBackUntilTheyAreFree) {
+/// Beyond the axes the force fades: nobody who presses through is let go in one step.
+TEST(ToolContactTest, ToolsThatCrossArePushedBackAndLetGoByDegrees) {
+  constexpr double kStep = 1e-4;  // [m]
   ToolContact contact = apart();
-  for (double height = 3.6e-3; height > -3.6e-3; height -= 1e-4) {
+  double before = 0.0;
+  for (double height = 3.7e-3; height > -4.2e-3; height -= kStep) {
     const Vector3d force =
         contact.force(burr_at({0.05, height, 0.0}), kTube, Vector3d::Zero(), 0.0);
-    EXPECT_GT(force.y(), 0.0) << height;
-    EXPECT_NEAR(force.y(), kStiffness * (3.7e-3 - height), 1e-9) << height;
+    EXPECT_GE(force.y(), 0.0) << height;
+    EXPECT_LT(std::abs(force.y() - before), 2.0 * kStiffness * kStep) << height;
+    if (height > 0.0) {
+      EXPECT_NEAR(force.y(), kStiffness * (3.7e-3 - height), 1e-9) << height;
+    }
+    before = force.y();
   }
+  EXPECT_EQ(before, 0.0);
 }
 
 TEST(ToolContactTest, ToolsThatAreInEachOtherAtFirstAreNotFeltBeforeTheyWereApart) {
