@@ -165,4 +165,15 @@ void note_files(const fs::path& folder, const std::string& what,
   }
 }
 
+std::vector<std::size_t> seen_analyses(const PlanLog& log) {
+  std::vector<std::size_t> seen;
+  for (std::size_t i = 0; i < log.entries.size(); ++i) {
+    const bool failed = i + 1 < log.entries.size() && log.entries[i + 1].what == kAnalysisFailed;
+    if (log.entries[i].what == kAnalysed && !failed) {
+      seen.push_back(i);
+    }
+  }
+  return seen;
+}
+
 }  // namespace haptrial::experiments

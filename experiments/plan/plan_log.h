@@ -13,11 +13,12 @@ namespace haptrial::experiments {
 // plan, so that a line that is changed, taken out or put in breaks the chain behind it.
 
 /// The words for what was done, one in each line.
-inline constexpr const char* kSessionClosed = "session";  // begun=TIME sha256=DIGEST
-inline constexpr const char* kAnalysed = "analysis";      // people=7 tests=definition
-inline constexpr const char* kExcluded = "exclusion";     // sha256=DIGEST ...
-inline constexpr const char* kWithdrawn = "withdrawal";   // sha256=DIGEST ...
-inline constexpr const char* kPlanEvent = "plan";         // event of a session that has a plan
+inline constexpr const char* kSessionClosed = "session";           // begun=TIME sha256=DIGEST
+inline constexpr const char* kAnalysed = "analysis";               // people=7 tests=definition
+inline constexpr const char* kAnalysisFailed = "analysis_failed";  // of which nothing was seen
+inline constexpr const char* kExcluded = "exclusion";              // sha256=DIGEST ...
+inline constexpr const char* kWithdrawn = "withdrawal";            // sha256=DIGEST ...
+inline constexpr const char* kPlanEvent = "plan";  // event of a session that has a plan
 
 /// The values that a text of NAME=VALUE, separated by spaces, has under a name; a value goes up to
 /// the next name.
@@ -45,6 +46,9 @@ PlanLog read_plan_log(const std::filesystem::path& plan);
 /// Adds a line; several processes may do so at once. @throws RunError in the words of the system
 void note_in_log(const std::filesystem::path& plan, const std::string& what,
                  const std::string& detail);
+
+/// Places of the analyses of which something was seen: those that did not fail.
+std::vector<std::size_t> seen_analyses(const PlanLog& log);
 
 /// "plan=DIGEST link=DIGEST" for an event of a session that begins in a folder; empty without a
 /// plan there.

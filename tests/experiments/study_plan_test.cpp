@@ -186,6 +186,67 @@ TEST_F(StudyPlanTest, AStatedRuleMayEndTheStudyAndLookAtAnyTime) {
   EXPECT_EQ(stated_and_done("results.json")["findings"]["deviations"]["estimate"], 0);
 }
 
+/// Who was excluded, and who came, when the result was known.
+TEST_F(StudyPlanTest, LooksAreJudgedByTheOrderOfTheLog) {
+  test::write_text(folder_ / "study.toml", R"([experiment]
+protocol = "trials"
+name = "weights"
+[design]
+participants = 2
+[factors]
+push = [0.5, 1.5]
+[fields.weight]
+type = "constant"
+force = [0.0, 0.0, "-$push"]
+[[stages]]
+name = "before"
+until = { time = 0.01 }
+[[stages]]
+name = "feel"
+fields = ["weight"]
+until = { time = 0.03 }
+[response]
+name = "heavy"
+question = "Is it heavy?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[blocks]]
+name = "main"
+trials = 6
+[observer]
+decides = "yes"
+criterion = 0.8
+reaction = 0.1
+[observer.actions]
+feel = { do = "hold" }
+[analysis]
+kind = "times"
+tests = ["1.5 < 0.5"]
+by = ["push"]
+[plan]
+hypotheses = ["Heavy weights are answered sooner than light ones"]
+exclusions = ["left early"]
+)");
+  const auto analyzed = [this](const std::string& options, int status) {
+    const auto done = run("analyze out " + options);
+    EXPECT_EQ(done.status, status) << done.errors;
+    std::vector<std::string> kinds;
+    if (status == 0) {
+      for (const auto& each : stated_and_done("results.json")["tables"]["deviations"]) {
+        kinds.push_back(each["kind"]);
+      }
+    }
+    return kinds;
+  };
+  ASSERT_EQ(run("plan study.toml").status, 0);
+  ASSERT_EQ(run("dry-run study.toml --out out").status, 0);
+  analyzed("--planned '1.5 < 0,5'", 2);  // nothing of it was seen
+  EXPECT_THAT(analyzed("", 0), testing::IsEmpty());
+  ASSERT_EQ(run("roster study.toml out --exclude S02 --because 'left early'").status, 0);
+  EXPECT_THAT(analyzed("", 0), testing::ElementsAre("people_missing", "excluded_late"));
+  ASSERT_EQ(run("run study.toml --subject Sb02 --device virtual --out out").status, 0);
+  EXPECT_THAT(analyzed("", 0), testing::IsSupersetOf({"looked_at_data", "excluded_late"}));
+}
+
 TEST_F(StudyPlanTest, SessionsOfAnotherPlanAreRefused) {
   write_study("");
   ASSERT_EQ(run("plan study.toml").status, 0);

@@ -259,8 +259,8 @@ std::string_view unwrapped(std::string_view text) {
 }
 
 bool is_missing(std::string_view text) {
-  constexpr std::array<std::string_view, 10> kMissing{"",    "null", "None", "NA",        "N/A",
-                                                      "n/a", "NaN",  "nan",  "undefined", "[]"};
+  constexpr std::array<std::string_view, 12> kMissing{
+      "", ".", "null", "NULL", "None", "NA", "N/A", "n/a", "NaN", "nan", "undefined", "[]"};
   return std::ranges::find(kMissing, text) != kMissing.end();
 }
 

@@ -98,8 +98,16 @@ int analyze_sessions(const AnalyzeOptions& options, Pilots pilots, int threads, 
   request.planned = options.planned;
   request.reference = options.reference;
   request.shares = options.shares;
-  const std::vector<std::string> lines = with_recorded_kinds(
-      options.folder, [&] { return study_of(request.files.first).analyze(request); });
+  std::vector<std::string> lines;
+  try {
+    lines = with_recorded_kinds(options.folder,
+                                [&] { return study_of(request.files.first).analyze(request); });
+  } catch (...) {
+    if (pilots == Pilots::kLeftOut) {
+      note_failed_analysis(options.folder);
+    }
+    throw;
+  }
   print_report(lines, request.out);
   report_link(request);
   if (!analysis::scores().empty()) {

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <span>
 
 #include "analysis/files/sha256.h"
 #include "core/base/counted.h"
@@ -33,23 +34,45 @@ std::string program_of(const record::SessionInfo& info) {
   return fmt::format("haptrial {} ({})", info.program_version, info.program_commit);
 }
 
-/// People of whom data had been analysed, and how often; analyses of the whole sample and stated
-/// ones are left out.
+bool is_session(const PlanEntry& entry) { return entry.what == kSessionClosed; }
+
+/// People of whom data had been analysed, and how often, before the last session that the plan
+/// states or another one after that; stated looks are left out.
 std::map<int, std::vector<const PlanEntry*>> early_looks(const PlannedStudy& study) {
   std::map<int, std::vector<const PlanEntry*>> looks;
   if (study.plan.ends_early == kAtAnyTime) {
     return looks;
   }
-  for (const PlanEntry& entry : study.log.entries) {
-    const auto people =
-        entry.what == kAnalysed ? entry.values("people") : std::vector<std::string>();
+  const std::span all = study.log.entries;
+  for (const std::size_t at : seen_analyses(study.log)) {
+    const auto people = all[at].values("people");
     const int count = people.empty() ? study.plan.participants() : std::atoi(people[0].c_str());
-    if (count < study.plan.participants() &&
+    const auto closed = std::ranges::count_if(all.first(at), is_session);
+    const bool complete = closed >= study.plan.participants() * study.plan.sessions;
+    const bool early = count < study.plan.participants() && !complete;
+    const bool followed = std::ranges::any_of(all.subspan(at), is_session);
+    if ((early || followed) &&
         std::ranges::find(study.plan.looks, count) == study.plan.looks.end()) {
-      looks[count].push_back(&entry);
+      looks[count].push_back(&all[at]);
     }
   }
   return looks;
+}
+
+/// People who were excluded when the result was known.
+void add_late_exclusions(const PlannedStudy& study, std::vector<Deviation>& deviations) {
+  const std::vector<std::size_t> seen = seen_analyses(study.log);
+  for (std::size_t i = seen.empty() ? study.log.entries.size() : seen.front();
+       i < study.log.entries.size(); ++i) {
+    const PlanEntry& entry = study.log.entries[i];
+    if (entry.what == kExcluded) {
+      deviations.push_back(
+          {"excluded_late",
+           fmt::format("somebody was excluded by {} at {}, after the data had been "
+                       "analysed at {}",
+                       entry.login, entry.time, study.log.entries[seen.front()].time)});
+    }
+  }
 }
 
 }  // namespace
@@ -104,15 +127,16 @@ void add_analyses(const PlannedStudy& study, std::vector<Deviation>& deviations)
   for (const auto& [people, entries] : early_looks(study)) {
     deviations.push_back(
         {"looked_at_data",
-         fmt::format("the data of {} of {} participants with every session was analysed {}, first "
-                     "by {} at {}",
+         fmt::format("the data of {} of {} participants with every session was analysed {} before "
+                     "the last session, first by {} at {}",
                      people, study.plan.participants(), counted(entries.size(), "time", "times"),
                      entries.front()->login, entries.front()->time)});
   }
+  add_late_exclusions(study, deviations);
   std::set<std::string> given;
-  for (const PlanEntry& entry : study.log.entries) {
-    for (const std::string& tests : entry.values("tests")) {
-      if (entry.what == kAnalysed && tests != "definition") {
+  for (const std::size_t at : seen_analyses(study.log)) {
+    for (const std::string& tests : study.log.entries[at].values("tests")) {
+      if (tests != "definition") {
         given.insert(tests);
       }
     }

@@ -67,8 +67,8 @@ std::string looks_stated(const StudyPlan& plan) {
 
 std::string analyses_done(const PlannedStudy& study) {
   std::vector<std::string> all;
-  for (const PlanEntry& entry : study.log.entries) {
-    if (const auto people = entry.values("people"); entry.what == kAnalysed && !people.empty()) {
+  for (const std::size_t at : seen_analyses(study.log)) {
+    if (const auto people = study.log.entries[at].values("people"); !people.empty()) {
       all.push_back(people[0]);
     }
   }
@@ -193,6 +193,12 @@ void note_analysis(const fs::path& folder, const std::vector<std::string>& given
       fmt::format("people={} tests={}",
                   complete_people(read_study_plan(*plan), session_facts(folder)),
                   given.empty() ? "definition" : fmt::format("{}", fmt::join(given, "; "))));
+}
+
+void note_failed_analysis(const fs::path& folder) {
+  if (const auto plan = plan_in(folder)) {
+    note_in_log(*plan, kAnalysisFailed, "");
+  }
 }
 
 }  // namespace haptrial::experiments

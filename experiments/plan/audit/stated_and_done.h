@@ -56,5 +56,7 @@ void add_stated_and_done();
 /// Adds an analysis of a folder to the log of its plan, if it has one: how many participants had
 /// every session, and what was given in place of the definition's tests.
 void note_analysis(const std::filesystem::path& folder, const std::vector<std::string>& given);
+/// Adds that it failed, so that nothing of it was seen.
+void note_failed_analysis(const std::filesystem::path& folder);
 
 }  // namespace haptrial::experiments

@@ -234,6 +234,8 @@ TEST_F(ImportedTrialsTest, TheWordNoneIsAnAnswerAndALevel) {
   EXPECT_EQ(study.trials[0].factors[0].word, "none");
   EXPECT_EQ(study.unanswered, 1u);
   EXPECT_THAT(study.warnings, Contains(HasSubstr("'None' is read as no answer, in 1 trial")));
+  const std::string points = "subject,level,answer,load\na,1,yes,x\na,2,.,x\na,2,NULL,x\n";
+  EXPECT_EQ(read(points, columns).unanswered, 2u) << "as SAS, SPSS and SQL write it";
   EXPECT_THAT(refusal("subject,level,answer,load\na,1,some,None\n", columns),
               HasSubstr("load is 'None'; allowed: a level"));
 }
