@@ -35,21 +35,31 @@ void refuse_twins(const std::vector<ExportSession>& sessions) {
   }
 }
 
-/// Numbers sessions as the files say. A subject who has a number twice, as in studies of one
-/// session that was repeated, has them in the order of start.
+/// Numbers sessions as the files say. A subject who has one number alone several times, as in
+/// studies of one session that was repeated, has them in the order of start.
+/// @throws InputError for a subject who has a number twice and others beside it
 void number_sessions(std::vector<ExportSession>& sessions) {
-  std::map<std::string, std::set<std::uint64_t>> numbers;
-  std::set<std::string> repeated;
+  std::map<std::string, std::map<std::uint64_t, const ExportSession*>> known;
+  std::map<std::string, std::pair<const ExportSession*, const ExportSession*>> twice;
   for (const auto& session : sessions) {
-    if (!numbers[session.info.subject].insert(session.info.session).second) {
-      repeated.insert(session.info.subject);
+    const auto [first, fresh] =
+        known[session.info.subject].try_emplace(session.info.session, &session);
+    if (!fresh) {
+      twice.try_emplace(session.info.subject, first->second, &session);
+    }
+  }
+  for (const auto& [subject, files] : twice) {
+    if (known[subject].size() > 1) {
+      throw InputError(fmt::format("{}: is session {} of {}, as {} is; give one of them",
+                                   files.second->file.string(), files.first->info.session, subject,
+                                   files.first->file.string()));
     }
   }
   std::map<std::string, int> count;
   for (auto& session : sessions) {
     const int place = ++count[session.info.subject];
     session.number =
-        repeated.contains(session.info.subject) ? place : static_cast<int>(session.info.session);
+        twice.contains(session.info.subject) ? place : static_cast<int>(session.info.session);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "analysis/force_training/score/scores_csv.h"
 #include "core/base/file_text.h"
 #include "tests/analysis/exchange/small_session.h"
+#include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
 
 namespace haptrial::exchange::export_csv_test {
@@ -167,6 +168,20 @@ TEST(ExportCsvTest, AfterASuspensionOnsetsAreStillByTheClock) {
   EXPECT_EQ(std::stod(rows[2].at("duration")), 2.21) << "five ticks are missing in it";
   EXPECT_EQ(std::stod(rows[3].at("onset")), 8.61);
   EXPECT_EQ(std::stod(rows[3].at("duration")), 2.2);
+}
+
+TEST(ExportCsvTest, ASessionThatWasRecordedTwiceMovesNoOther) {
+  const test::TemporaryFolder folder;
+  const std::vector<fs::path> files{folder / "1.h5", folder / "again.h5", folder / "2.h5"};
+  write_session(files[0], {.start_utc = "2026-11-20T09:30:00Z"});
+  write_session(files[1], {.start_utc = "2026-11-21T09:30:00Z"});
+  export_csv(std::vector{files[0], files[1]}, folder / "one", {},
+             ignore);  // a study of one session
+  EXPECT_EQ(rows_of(folder / "one/sessions.csv")[1].at("session"), "2");
+  write_session(files[2], {.session = 2, .start_utc = "2026-11-27T09:30:00Z"});
+  EXPECT_THAT(test::message_of<InputError>([&] { export_csv(files, folder / "two", {}, ignore); }),
+              testing::AllOf(HasSubstr("again.h5: is session 1 of P01, as "),
+                             HasSubstr("1.h5 is; give one of them")));
 }
 
 TEST(ExportCsvTest, SessionsSayWhoTookPartAndWhetherInAPilot) {

@@ -20,6 +20,7 @@ record::SessionInfo info_of(const SmallSession& s) {
   info.definition = s.definition;
   info.definition_name = "small_study.toml";
   info.subject = s.subject;
+  info.session = s.session;
   info.seed = 18446744073709551615u;
   info.device = "virtual";
   info.device_max_force = 12.0;

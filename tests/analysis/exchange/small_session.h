@@ -12,6 +12,7 @@ namespace haptrial::exchange {
 /// A session of a few seconds whose contents are known.
 struct SmallSession {
   std::string subject{"P01"};
+  std::uint64_t session{1};
   bool simulated{true};
   std::string clock{"simulated"};
   double rate{500.0};  // [Hz]

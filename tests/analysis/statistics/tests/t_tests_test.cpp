@@ -142,7 +142,7 @@ TEST(MeanInterval, CoversTheMeanAsOftenAsItSays) {
   EXPECT_NEAR(covered, 0.95 * kRepeats, 4.0 * std::sqrt(kRepeats * 0.95 * 0.05));
   EXPECT_THAT(mean_interval(Values{1}).because(), HasSubstr("two values"));
   const Mean same = mean_and_interval(Values{0.1, 0.1, 0.1});
-  EXPECT_EQ(same.value, 0.1);
+  EXPECT_DOUBLE_EQ(*same.value, 0.1);
   EXPECT_THAT(same.interval.because(), HasSubstr("do not vary"));
 }
 
