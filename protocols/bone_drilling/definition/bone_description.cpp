@@ -46,6 +46,11 @@ void warn_of_vibration(const BoneDefinition& d, std::vector<std::string>& warnin
 }
 
 void warn_of_devices(const BoneDefinition& d, std::vector<std::string>& warnings) {
+  if (d.drilling.second && d.nerves) {
+    warnings.emplace_back(
+        "the nerve monitor watches the tool of the first hand alone: a tube of second_hand that "
+        "touches or sucks at a nerve makes no burst, and is in no count of them");
+  }
   Table root = d.root();
   const auto check = [&](const char* table, double max_force) {
     if (root.has(table) && max_force < d.drilling.force_limit) {
