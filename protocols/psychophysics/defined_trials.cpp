@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/record/read/session_reader.h"
 #include "protocols/psychophysics/objects/deformable_bodies.h"
@@ -219,7 +220,9 @@ bool DefinedTrials::comes_again(const std::vector<record::ResponseRow>& response
 }
 
 /// Value that the procedure learns from a trial. A session that is resumed computes it from what is
-/// recorded, so it follows from the responses alone. Without a response it learns nothing.
+/// recorded, so it follows from the responses alone. Without a response it learns nothing, nor from
+/// a formula of a measure that has no value, as of a channel that fell silent: all else was
+/// checked.
 double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& responses) {
   if (current_.track < 0 || responses.empty()) {
     return kNone;
@@ -234,7 +237,11 @@ double DefinedTrials::outcome_of(const std::vector<record::ResponseRow>& respons
       names_->set(row.question, row.value);
     }
   }
-  return names_->value(track.counts);
+  try {
+    return names_->value(track.counts);
+  } catch (const InputError&) {
+    return kNone;
+  }
 }
 
 MakeDrawing DefinedTrials::drawing() { return trial_drawing(d_, bodies_); }
