@@ -137,10 +137,10 @@ std::string tutor_text(const SessionRequest& request) {
                      tutor.trial.value_or(0), tutor.from, fnv1a(file_text(tutor.file)));
 }
 
-/// Tables of the protocol, of outcomes of trials, of further devices and of markers.
-static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials,
-                                   const channel::ChannelSet& channels) {
-  record::TableList tables = record::with_tables(trials.tables(), channels.tables());
+/// Tables of channels, of outcomes of trials, of further devices and of markers.
+static record::TableList stated_tables(const SessionRequest& request,
+                                       const channel::ChannelSet& channels) {
+  record::TableList tables = channels.tables();
   tables.push_back(&record::table_of<record::SkippedRow>());
   tables.push_back(&record::table_of<record::TakenBackRow>());
   tables.push_back(&record::table_of<record::DampingRow>());
@@ -154,6 +154,11 @@ static record::TableList tables_of(const SessionRequest& request, const protocol
     tables.push_back(&record::table_of<record::MarkerRow>());
   }
   return tables;
+}
+
+static record::TableList tables_of(const SessionRequest& request, const protocols::Trials& trials,
+                                   const channel::ChannelSet& channels) {
+  return record::with_tables(trials.tables(), stated_tables(request, channels));
 }
 
 /// Tables that its file may have already: those of the protocol, and those of any.
@@ -231,9 +236,11 @@ bool repair_or_close(const SessionRequest& request) {
   if (!record::SessionWriter::can_resume(file)) {
     return false;
   }
+  const channel::ChannelSet channels = make_channels(request);
   record::Resumed found;
   record::SessionWriter writer = record::SessionWriter::resume(
-      file, found, record::with_tables(possible_tables(request), make_channels(request).tables()));
+      file, found, record::with_tables(possible_tables(request), channels.tables()),
+      stated_tables(request, channels));
   if (!found.repaired.empty()) {
     fmt::print(stderr, "{}\n", found.repaired);
   }

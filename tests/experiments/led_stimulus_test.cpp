@@ -84,7 +84,8 @@ delay = )" + std::to_string(delay) + "\n");
 TEST_F(LedStimulusTest, ARecordedPulseIsFeltOnce) {
   write(kPulse, 0.0);
   EXPECT_NEAR(largest_force(run("", "expert")), 3.0, 0.05);
-  EXPECT_NEAR(largest_force(run("--seed 5 --tutor expert/S01.h5:1", "led")), 3.0, 0.1);
+  EXPECT_NEAR(largest_force(run("--seed 5 --tutor expert/S01.h5:1", "led")), 3.0, 0.25)
+      << "and the spring";
 }
 
 TEST_F(LedStimulusTest, WhoIsTaughtFeelsTheTeachersStimulusAlone) {
@@ -92,7 +93,7 @@ TEST_F(LedStimulusTest, WhoIsTaughtFeelsTheTeachersStimulusAlone) {
     SCOPED_TRACE(delay);
     const std::string name = std::to_string(static_cast<int>(1e3 * delay));
     write(kPulse, delay);
-    EXPECT_NEAR(largest_force(run("--taught", "pulse" + name)), 3.0, 0.1);
+    EXPECT_NEAR(largest_force(run("--taught", "pulse" + name)), 3.0, 0.25) << "and the spring";
     write(kVibration, delay);
     EXPECT_NEAR(largest_force(run("--taught", "vibration" + name)), 1.5, 0.1);
   }
