@@ -167,7 +167,7 @@ void LinkedHand::couple(PassOutput& out, const device::DeviceReading& reading, d
   out.intent.push = share * out.intent.push + coupling_;
   out.intent.added = share * out.intent.added + (share - last_share_) * out.intent.stored;
   out.intent.stored *= share;
-  // What begins and ends counts as much as it is felt: the envelope takes it for part of the force.
+  // Stimuli count as much as they are felt: the envelope takes them for part of the force.
   out.intent.stimulus = passed * (share * out.intent.stimulus + side_.played_stimulus());
   out.intent.ended *= last_share_;
   last_share_ = share;

@@ -186,7 +186,7 @@ TEST_F(StudyPlanTest, AStatedRuleMayEndTheStudyAndLookAtAnyTime) {
   EXPECT_EQ(stated_and_done("results.json")["findings"]["deviations"]["estimate"], 0);
 }
 
-/// Who was excluded, and who came, when the result was known.
+/// Somebody is excluded and somebody comes when the result is known.
 TEST_F(StudyPlanTest, LooksAreJudgedByTheOrderOfTheLog) {
   test::write_text(folder_ / "study.toml", R"([experiment]
 protocol = "trials"

@@ -135,13 +135,6 @@ void LeadReport::add_way_out(const Presented& presented, const std::string& stag
 
 std::vector<std::string> LeadReport::warnings() const { return sentences_of(beside_); }
 
-std::string ramped_in(const std::string& what, double ramp) {
-  return fmt::format(
-      "{}, while the device's force ramps in for {:g} s (envelope.ramp_in), so that the hand feels "
-      "less; let another stage come first",
-      what, ramp);
-}
-
 namespace {
 
 /// Whether a stage takes no longer than it says.

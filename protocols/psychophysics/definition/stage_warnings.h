@@ -32,10 +32,6 @@ class LeadReport {
   std::map<std::string, std::string> beside_;  // by stage: the sentence
 };
 
-/// A sentence on what a first stage presents while the force of a pass grows (envelope.ramp_in).
-/// @param what  "fields.pull is ..."  @param ramp  [s]
-std::string ramped_in(const std::string& what, double ramp);
-
 /// Gathers what acts in first stages while the force grows, so that less than stated is felt.
 class RampReport {
  public:

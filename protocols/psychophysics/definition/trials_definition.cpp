@@ -12,7 +12,6 @@
 #include "core/psychometric/definition/expectation.h"
 #include "core/record/rows/trial_rows.h"
 #include "protocols/psychophysics/definition/only_seen.h"
-#include "protocols/psychophysics/definition/stage_warnings.h"
 
 namespace haptrial::protocols {
 
@@ -209,6 +208,13 @@ std::vector<markers::MarkerMeaning> TrialsDefinition::marker_meanings() const {
   return all;
 }
 
+std::string ramped_in(const std::string& what, double ramp) {
+  return fmt::format(
+      "{}, while the device's force ramps in for {:g} s (envelope.ramp_in), so that the hand feels "
+      "less; let another stage come first",
+      what, ramp);
+}
+
 std::vector<std::string> TrialsDefinition::warnings() const {
   std::vector<std::string> all = unmatched_literals(text);
   all.insert(all.end(), underdamped.begin(), underdamped.end());
@@ -236,7 +242,8 @@ std::vector<std::string> TrialsDefinition::warnings() const {
   if (mirror_left_handed && !channels.empty()) {
     all.push_back(
         "what channels say is not mirrored for left-handed participants "
-        "(design.mirror_left_handed): a force or place along x has the other sign for them than for "
+        "(design.mirror_left_handed): a force or place along x has the other sign for them than "
+        "for "
         "right-handed ones, in stages, measures and tables");
   }
   for (const TrialQuestion& question : questions) {

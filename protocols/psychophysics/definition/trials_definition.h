@@ -104,4 +104,8 @@ struct TrialsDefinition : Definition {
   int combinations(const Track& track, const Block& block) const;
 };
 
+/// A sentence on what a first stage presents while the force of a pass grows (envelope.ramp_in).
+/// @param what  "fields.pull is ..."  @param ramp  [s]
+std::string ramped_in(const std::string& what, double ramp);
+
 }  // namespace haptrial::protocols
