@@ -210,7 +210,7 @@ void add_learning_section(Document& document, const LearnedStudy& study,
     if (drawing != drawings.end()) {
       document.picture(*drawing);
     } else {
-      document.paragraph("No figure is drawn: it takes two participants of a group in a session.");
+      document.paragraph("No figure is drawn: no participant has a value in a session.");
     }
     add_outcome_table(document, outcome, study.plan);
     if (outcome.changes.cells.empty()) {

@@ -254,15 +254,17 @@ TEST_F(RetentionSessionTest, ANumberOfAnotherGroupIsRefused) {
   EXPECT_THAT(text, HasSubstr("allowed: --participant with a number of seen"));
 }
 
-TEST_F(RetentionSessionTest, GroupsOfOneHaveAReportWithoutAFigure) {
+TEST_F(RetentionSessionTest, GroupsOfOneHaveMeansWithoutIntervals) {
   std::string text = test::replaced(short_study(), "participants = 6", "participants = 3");
   text = test::replaced(text, "seen = 2\nseen-and-felt = 2\ncontrol = 2",
                         "seen = 1\nseen-and-felt = 1\ncontrol = 1");
   test::write_text(*folder_ / "ones.toml", text);
   good("dry-run ones.toml --out ones");
   good("analyze ones");
-  EXPECT_THAT(test::read_text(*folder_ / "ones" / "report.md"),
-              HasSubstr("No figure is drawn: it takes two participants of a group in a session."));
+  const std::string report = test::read_text(*folder_ / "ones" / "report.md");
+  EXPECT_THAT(report, HasSubstr("](learning-score.svg)"));
+  EXPECT_THAT(report,
+              testing::ContainsRegex("\n\\| seen \\| [0-9.]+ \\| [0-9.]+ \\| [0-9.]+ \\| "));
 }
 
 TEST_F(RetentionSessionTest, AMistakeInThePlanGetsASentence) {

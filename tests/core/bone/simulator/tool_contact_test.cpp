@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -179,21 +181,35 @@ TEST(ToolContactTest, ToolsThatMeetLoseEnergyAlsoInTicks) {
 }
 
 /// Beyond the axes the force fades: nobody who presses through is let go in one step.
-TEST(ToolContactTest, ToolsThatCrossArePushedBackAndLetGoByDegrees) {
+/// @param tool  at a height over the tube  @param reach  sum of the radii
+void expect_let_go_by_degrees(const std::function<Rod(double)>& tool, double reach) {
   constexpr double kStep = 1e-4;  // [m]
   ToolContact contact = apart();
   double before = 0.0;
-  for (double height = 3.7e-3; height > -4.2e-3; height -= kStep) {
-    const Vector3d force =
-        contact.force(burr_at({0.05, height, 0.0}), kTube, Vector3d::Zero(), 0.0);
-    EXPECT_GE(force.y(), 0.0) << height;
-    EXPECT_LT(std::abs(force.y() - before), 2.0 * kStiffness * kStep) << height;
+  for (double height = reach; height > -reach - 5.0 * kStep; height -= kStep) {
+    const std::array rods{tool(height)};
+    const double force = contact.force(rods, kTube, Vector3d::Zero(), 0.0).norm();
+    EXPECT_LT(std::abs(force - before), 2.0 * kStiffness * kStep) << height;
     if (height > 0.0) {
-      EXPECT_NEAR(force.y(), kStiffness * (3.7e-3 - height), 1e-9) << height;
+      EXPECT_NEAR(force, kStiffness * (reach - height), 1e-9) << height;
     }
-    before = force.y();
+    before = force;
   }
   EXPECT_EQ(before, 0.0);
+}
+
+TEST(ToolContactTest, ToolsThatCrossArePushedBackAndLetGoByDegrees) {
+  expect_let_go_by_degrees(
+      [](double height) {
+        const Vector3d place(0.05, height, 0.0);
+        return Rod{place, place, 2e-3};
+      },
+      3.7e-3);
+  expect_let_go_by_degrees(
+      [](double height) {
+        return Rod{{0.05, -0.05, height}, {0.05, 0.05, height}, 1e-3};
+      },
+      2.7e-3);
 }
 
 TEST(ToolContactTest, ToolsThatAreInEachOtherAtFirstAreNotFeltBeforeTheyWereApart) {

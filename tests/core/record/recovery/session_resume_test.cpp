@@ -422,7 +422,7 @@ TEST(SessionResumeTest, OfAFileCutShortWhatIsLeftIsKept) {
   }
 }
 
-TEST(SessionResumeTest, APassThatLostSamplesIsAbortedAndTheRestIsKept) {
+TEST(SessionResumeTest, APassThatLostSamplesIsDamagedAndTheRestIsKept) {
   Damaged file;
   std::string bytes = file.bytes;
   bytes.replace(bytes.size() / 2, 4096, 4096, '\0');
@@ -430,12 +430,12 @@ TEST(SessionResumeTest, APassThatLostSamplesIsAbortedAndTheRestIsKept) {
   EXPECT_LT(file.found.rows, 20000u);
   EXPECT_GE(file.found.rows, 20000u - 2 * 768u);
   ASSERT_EQ(file.found.passes.size(), 7u);
-  const auto aborted =
+  const auto damaged =
       std::count_if(file.found.passes.begin(), file.found.passes.end(),
-                    [](const PassRow& pass) { return pass.status == PassStatus::kAborted; });
-  EXPECT_GE(aborted, 1);
-  EXPECT_LE(aborted, 2);
-  EXPECT_EQ(static_cast<std::uint64_t>(aborted), file.found.dropped_passes);
+                    [](const PassRow& pass) { return pass.status == PassStatus::kDamaged; });
+  EXPECT_GE(damaged, 1);
+  EXPECT_LE(damaged, 2);
+  EXPECT_EQ(static_cast<std::uint64_t>(damaged), file.found.dropped_passes);
 }
 
 TEST(SessionResumeTest, AFileOfVersionOneGoesOnInTheNewLayout) {
