@@ -106,7 +106,8 @@ TEST(LiveBoneTest, NoProcedureFollowsAPreparationThatWasAborted) {
   for (const std::string request : {"abort", "skip"}) {
     const test::TemporaryFolder folder;
     test::write_text(folder / "study.toml",
-                     test::drilling_with({{"time_limit", "time_limit = 4.0"}}));
+                     test::drilling_with({{"time_limit", "time_limit = 4.0"},
+                                          {"seed", "seed = 1\nspacing = 0.0003"}}));  // many voxels
     test::LiveCommand session(run_arguments(folder, "--trials 1 --console"));
     test::ConsolePerson person(session.line_after("console: "));
     ASSERT_TRUE(person.sees("instructions")) << session.errors();

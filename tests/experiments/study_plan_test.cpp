@@ -231,7 +231,7 @@ exclusions = ["left early"]
     EXPECT_EQ(done.status, status) << done.errors;
     std::vector<std::string> kinds;
     if (status == 0) {
-      const nlohmann::json found = stated_and_done("results.json");
+      nlohmann::json found = stated_and_done("results.json");
       for (const auto& each : found["tables"]["deviations"]) {
         kinds.push_back(each["kind"]);
       }

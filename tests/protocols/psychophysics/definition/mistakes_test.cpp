@@ -540,18 +540,19 @@ TEST(TrialMistakesTest, AForceThatActsWhileThePassRampsInGetsAWarning) {
   };
   const std::string pulse = "type = \"pulse\"\nforce = [0.0, -4.0, 0.0]\nduration = 0.05\n";
   const std::string constant = "type = \"constant\"\nforce = [0.0, -1.0, 0.0]\n";
-  const auto stage = [](const std::string& time, const std::string& fields) {
-    return "[[stages]]\nname = \"early\"\nfields = [" + fields + "]\nuntil = { time = " + time +
-           " }\n";
+  const auto stage = [](const std::string& name, const std::string& time, bool pulls) {
+    return "[[stages]]\nname = \"" + name + "\"\n" + (pulls ? "fields = [\"pull\"]\n" : "") +
+           "until = { time = " + time + " }\n";
   };
-  EXPECT_THAT(warnings(pulse, stage("0.6", "\"pull\"")),
+  EXPECT_THAT(warnings(pulse, stage("early", "0.6", true)),
               ElementsAre(HasSubstr("fields.pull has a course in time, which begins with the first "
                                     "stage, early, while the device's force ramps in for 0.1 s")));
-  EXPECT_THAT(warnings(constant, stage("0.05", "\"pull\"")),
+  EXPECT_THAT(warnings(constant, stage("early", "0.05", true)),
               ElementsAre(HasSubstr("fields.pull acts in the stage early, which is the first and "
                                     "ends after 0.05 s, while the device's force ramps in")));
-  EXPECT_THAT(warnings(constant, stage("0.6", "\"pull\"")), IsEmpty());
-  EXPECT_THAT(warnings(pulse, stage("0.3", "") + stage("0.6", "\"pull\"")), IsEmpty());
+  EXPECT_THAT(warnings(constant, stage("early", "0.6", true)), IsEmpty());
+  EXPECT_THAT(warnings(pulse, stage("rest", "0.3", false) + stage("early", "0.6", true)),
+              IsEmpty());
 }
 
 TEST(TrialMistakesTest, ARegionOutsideOfThePictureGetsAWarning) {
