@@ -25,11 +25,10 @@ std::optional<PlannedTrial> NextTrial::after(const Outcome* last) {
       return std::nullopt;
     }
     const auto before = outcome_of(earlier, *trial, p_.trials.phases().back());
-    const bool in_any_order = p_.trials.presents_aborted_again();
-    const bool again =
-        before &&
-        ((before->end == TrialEnd::kAborted && (in_any_order || ended_with(earlier, *trial))) ||
-         (in_any_order && is_damaged(earlier, *trial)));
+    const bool aborted = before && before->end == TrialEnd::kAborted;
+    // Where later trials follow from its answer, only the last one comes again.
+    const bool again = p_.trials.presents_aborted_again() ? aborted || is_damaged(earlier, *trial)
+                                                          : aborted && ended_with(earlier, *trial);
     if (!before || again) {
       return trial;
     }

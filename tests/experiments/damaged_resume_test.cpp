@@ -54,7 +54,7 @@ up = 1
 range = [0.0, 1.0]
 estimate = { of = "mean of levels" }
 counts = "$answer == 1"
-stop = { trials = 7 }
+stop = { trials = 8 }
 [observer]
 decides = "yes"
 criterion = 0.25   # [N]
@@ -64,7 +64,7 @@ reaction = 0.1
 feel = { do = "hold" }
 )";
 
-constexpr int kTrials = 7;
+constexpr int kTrials = 8;
 
 class DamagedResumeTest : public testing::Test {
  protected:
