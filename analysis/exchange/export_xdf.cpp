@@ -43,20 +43,21 @@ std::vector<std::pair<std::string, std::string>> about(const record::SessionInfo
           {"program", fmt::format("haptrial {} ({})", info.program_version, info.program_commit)}};
 }
 
-/// The nominal rate of the ticks; 0 where one lies a period or more beside it, as after missing
-/// ticks and suspensions: readers space the samples of a stream with a rate evenly over such gaps.
+/// The nominal rate of the ticks; 0 where more than one in a hundred lies a period or more beside
+/// it, as all do after missing ticks and suspensions: readers space the samples of a stream with a
+/// rate evenly over such gaps. A tick that is late alone moves nothing.
 double even_rate(const SessionReader& reader) {
+  constexpr double kMost = 0.01;
   const double rate = reader.info().rate;
   double first = 0.0;
-  std::uint64_t ticks = 0;
-  bool even = true;
+  std::uint64_t ticks = 0, beside = 0;
   record::each_sample(reader, [&](const record::Sample& sample) {
     const double time = seconds(sample.time_ns);
     first = ticks == 0 ? time : first;
-    even = even && std::abs(time - first - static_cast<double>(ticks) / rate) < 1.0 / rate;
+    beside += std::abs(time - first - static_cast<double>(ticks) / rate) >= 1.0 / rate ? 1 : 0;
     ++ticks;
   });
-  return even ? rate : 0.0;
+  return static_cast<double>(beside) <= kMost * static_cast<double>(ticks) ? rate : 0.0;
 }
 
 XdfStream device_stream(const ExportSession& session, double rate) {

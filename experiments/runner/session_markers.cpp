@@ -90,9 +90,9 @@ void SessionMarkers::open_sound(const SessionRequest& request) {
     player_->mask(set.masking && masked_.empty());
   } catch (const RunError& error) {
     if (speech_.spoken || set.has_stimuli()) {
-      throw InputError(fmt::format("{}; {} one", error.what(),
-                                   speech_.spoken ? "display.spoken needs"
-                                                  : "vibrations, and sounds that vary, need"));
+      throw InputError(fmt::format(
+          "{}; {} one", error.what(),
+          speech_.spoken ? "display.spoken needs" : "vibrations, and sounds that vary, need"));
     }
     notice_ = fmt::format("{}; the session goes on without its sounds", error.what());
   }

@@ -28,8 +28,8 @@ class SessionMarkers {
   /// @param log     of the servo thread's onsets; outlives the markers
   /// @param outlet  null: no stream; outlives the markers
   /// @param now     the session's clock [ns], asked by several threads
-  /// @throws InputError if the definition names a serial line that cannot be opened, or is spoken or
-  /// has stimuli that are sounds and there is no sound card
+  /// @throws InputError if the definition names a serial line that cannot be opened, or is spoken
+  /// or has stimuli that are sounds and there is no sound card
   SessionMarkers(const SessionRequest& request, markers::OnsetLog& log, stream::LslOutlet* outlet,
                  std::function<std::int64_t()> now);
   ~SessionMarkers();

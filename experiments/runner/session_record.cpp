@@ -211,8 +211,7 @@ std::int32_t SessionRecord::begin_pass(const PlannedTrial& trial, const record::
 void SessionRecord::end_pass(const protocols::PassResult& result) {
   append_rest();
   keep_markers(false);
-  const bool aborted =
-      result.state == protocols::PassState::kAborted || markers_.lost_stimuli();
+  const bool aborted = result.state == protocols::PassState::kAborted || markers_.lost_stimuli();
   add_pass(aborted ? record::PassStatus::kAborted : record::PassStatus::kCompleted,
            result.first_sample, result.last_sample);
 }

@@ -153,7 +153,7 @@ struct Definition {
   virtual std::vector<std::string> left_out_of_dry_runs() const { return {}; }
   /// Text of the script beside the definition that chooses what is presented; empty: it has none.
   virtual std::string presenting_script() const { return {}; }
-  /// The same with those that virtual participants answer by.
+  /// That text, and those of scripts by which virtual participants answer.
   virtual std::string scripts() const { return presenting_script(); }
   /// Time of a participant's session at most, roughly, without breaks [s]. @param trials  of it
   virtual double longest(int trials) const = 0;

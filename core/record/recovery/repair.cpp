@@ -123,8 +123,7 @@ class Plan {
     for (const BegunRow& begun : rows_.begun) {
       known[begun.row] = begun.pass;
     }
-    std::int32_t end =
-        0;  // behind the last pass that is whole or was followed: what follows is open
+    std::int32_t end = 0;  // behind the last pass that is whole or followed: the rest is open
     std::map<std::int32_t, bool> whole;
     for (std::size_t i = 0; i < rows_.passes.size(); ++i) {
       const PassRow& row = rows_.passes[i];

@@ -127,8 +127,8 @@ void add_import(CLI::App& app, int& status) {
   sub->add_option("--factor", o.factors, "Column of a factor, or NAME=COLUMN; may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--only", o.filters,
-                  "COLUMN=VALUE: rows with another value are no trials; COLUMN: rows with none; may be "
-                  "repeated")
+                  "COLUMN=VALUE: rows with another value are no trials; COLUMN: rows without any; "
+                  "may be repeated")
       ->allow_extra_args(false);
   sub->add_option("--time-unit", o.time_unit,
                   "Unit of reaction times: s or ms (default: s of PsychoPy, ms of jsPsych, of "

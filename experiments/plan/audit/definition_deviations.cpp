@@ -36,23 +36,35 @@ std::string program_of(const record::SessionInfo& info) {
 
 bool is_session(const PlanEntry& entry) { return entry.what == kSessionClosed; }
 
+/// Participants with every session at an analysis.
+int people_at(const PlannedStudy& study, std::size_t analysis) {
+  const auto people = study.log.entries[analysis].values("people");
+  return people.empty() ? study.plan.participants() : std::atoi(people[0].c_str());
+}
+
+/// Analyses that the plan does not state as looks at the data, by their place in the log.
+std::vector<std::size_t> unstated_analyses(const PlannedStudy& study) {
+  if (study.plan.ends_early == kAtAnyTime) {
+    return {};
+  }
+  std::vector<std::size_t> unstated = seen_analyses(study.log);
+  std::erase_if(unstated, [&](std::size_t at) {
+    return std::ranges::find(study.plan.looks, people_at(study, at)) != study.plan.looks.end();
+  });
+  return unstated;
+}
+
 /// People of whom data had been analysed, and how often, before the last session that the plan
 /// states or another one after that; stated looks are left out.
 std::map<int, std::vector<const PlanEntry*>> early_looks(const PlannedStudy& study) {
   std::map<int, std::vector<const PlanEntry*>> looks;
-  if (study.plan.ends_early == kAtAnyTime) {
-    return looks;
-  }
   const std::span all = study.log.entries;
-  for (const std::size_t at : seen_analyses(study.log)) {
-    const auto people = all[at].values("people");
-    const int count = people.empty() ? study.plan.participants() : std::atoi(people[0].c_str());
+  for (const std::size_t at : unstated_analyses(study)) {
+    const int count = people_at(study, at);
     const auto closed = std::ranges::count_if(all.first(at), is_session);
     const bool complete = closed >= study.plan.participants() * study.plan.sessions;
     const bool early = count < study.plan.participants() && !complete;
-    const bool followed = std::ranges::any_of(all.subspan(at), is_session);
-    if ((early || followed) &&
-        std::ranges::find(study.plan.looks, count) == study.plan.looks.end()) {
+    if (early || std::ranges::any_of(all.subspan(at), is_session)) {
       looks[count].push_back(&all[at]);
     }
   }
@@ -61,16 +73,18 @@ std::map<int, std::vector<const PlanEntry*>> early_looks(const PlannedStudy& stu
 
 /// People who were excluded when the result was known.
 void add_late_exclusions(const PlannedStudy& study, std::vector<Deviation>& deviations) {
-  const std::vector<std::size_t> seen = seen_analyses(study.log);
-  for (std::size_t i = seen.empty() ? study.log.entries.size() : seen.front();
-       i < study.log.entries.size(); ++i) {
-    const PlanEntry& entry = study.log.entries[i];
+  const std::vector<std::size_t> seen = unstated_analyses(study);
+  if (seen.empty()) {
+    return;
+  }
+  const std::span all = study.log.entries;
+  for (const PlanEntry& entry : all.subspan(seen.front())) {
     if (entry.what == kExcluded) {
       deviations.push_back(
           {"excluded_late",
            fmt::format("somebody was excluded by {} at {}, after the data had been "
                        "analysed at {}",
-                       entry.login, entry.time, study.log.entries[seen.front()].time)});
+                       entry.login, entry.time, all[seen.front()].time)});
     }
   }
 }

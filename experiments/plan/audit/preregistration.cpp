@@ -194,10 +194,10 @@ StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
   plan.power = simulation.empty() ? power_of_t(table, plan)
                                   : simulated_power(simulation, plan.name, plan.participants());
   if (!plan.power.empty() && !plan.ends_early.empty()) {
-    plan.power.push_back(fmt::format(
-        "this is of the planned test with every participant; the rule \"{}\" of "
-        "analysis.sequential decides, and its power is another, which is not stated",
-        plan.ends_early));
+    plan.power.push_back(
+        fmt::format("this is of the planned test with every participant; the rule \"{}\" of "
+                    "analysis.sequential decides, and its power is another, which is not stated",
+                    plan.ends_early));
   }
   return plan;
 }
