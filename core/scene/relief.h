@@ -43,6 +43,7 @@ class Grating {
   double ridges(const Eigen::Vector3d& way) const noexcept;
   double steepest() const noexcept;     // largest |∇h|
   double most_curved() const noexcept;  // bound of the second derivative of h [1/m]
+  bool operator==(const Grating&) const = default;
 
  private:
   Eigen::Vector3d wave_;  // 2 pi u / period [1/m]
@@ -80,6 +81,7 @@ class Texture {
   double ridges(const Eigen::Vector3d& way) const noexcept;
   double steepest() const noexcept { return steepest_; }
   double most_curved() const noexcept { return most_curved_; }
+  bool operator==(const Texture&) const = default;
 
  private:
   std::array<Eigen::Vector3d, kWaves> waves_;  // [1/m]

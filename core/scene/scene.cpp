@@ -49,6 +49,19 @@ SurfaceTouch touch_of(const Law& law) noexcept {
       law);
 }
 
+/// Whether two reliefs have the same heights everywhere; true of laws that are no reliefs.
+bool same_relief(const Law& a, const Law& b) noexcept {
+  return std::visit(
+      [&](const auto& own) {
+        using Same = std::decay_t<decltype(own)>;
+        if constexpr (std::is_same_v<Same, Grating> || std::is_same_v<Same, Texture>) {
+          return own == *std::get_if<Same>(&b);
+        }
+        return true;
+      },
+      a);
+}
+
 Law law_of(const Field& field, const Setting& setting) {
   return std::visit(
       [&](const auto& parameters) -> Law {
@@ -94,6 +107,8 @@ struct Scene::Part {
   ReliefHere relief{};     // of a surface
   PassingWatch passing{};  // of a relief
   FieldState state{};
+  bool other_relief{false};                  // its heights changed with this tick
+  Vector3d stimulus_before{Vector3d::Zero()};  // of the last tick, if the field goes on [N]
   Part* before{nullptr};  // of the scene before, until it is known what acts in this one
   Part* lender{nullptr};  // of a scene before, whose law fades out here; has this part's own
 
@@ -109,10 +124,12 @@ struct Scene::Part {
   void take_own_law() noexcept {
     if (Part* from = std::exchange(before, nullptr)) {
       adopt_law(*from);
+      other_relief = !same_relief(law, from->law);
     }
     if (Part* has_own = std::exchange(lender, nullptr)) {
       swap_law(*has_own);
       adopt_law(*has_own);
+      other_relief = !same_relief(law, has_own->law);
     }
   }
   void swap_law(Part& other) noexcept {
@@ -246,6 +263,7 @@ void Scene::lay_reliefs(const Vector3d& p, const Vector3d& ahead) noexcept {
     const auto lay = [&](const auto& law) {
       law.add(p, part.fade.weight(), relief, part.state);
       relief.passes |= part.passing.look(law.ridges(ahead), period_);
+      relief.changed |= std::exchange(part.other_relief, false);
     };
     if (const auto* grating = std::get_if<Grating>(&part.law)) {
       lay(*grating);
@@ -321,9 +339,9 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
     part.state.work += part.state.force.dot(hand.position - before_);
     part.state.weight = part.fade.weight();
     part.state.force.setZero();
-    if (part.begins || !part.acts()) {
-      ended_ += part.state.stimulus;
-    }
+    const bool ends = part.begins || !part.acts();
+    ended_ += ends ? part.state.stimulus : Vector3d(Vector3d::Zero());
+    part.stimulus_before = ends ? Vector3d(Vector3d::Zero()) : part.state.stimulus;
     part.state.stimulus.setZero();
     part.state.stored = part.state.added = 0.0;
     if (!part.acts()) {
@@ -343,6 +361,7 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
       sum += parts_[i].state.force;
     }
   }
+  end_stimuli_of_reliefs();
   for (Part& part : parts_) {
     if (part.acts()) {
       part.state.max_depth = std::max(part.state.max_depth, part.state.depth);
@@ -352,6 +371,19 @@ Vector3d Scene::force(const PointState& hand, const control::GainShares& shares,
   }
   share_ = shares.stiffness;
   return sum;
+}
+
+/// Ridges under a moving hand are a stimulus of the surface, which goes on when they end or become
+/// others.
+void Scene::end_stimuli_of_reliefs() noexcept {
+  for (const std::size_t i : surfaces_) {
+    const Part& part = parts_[i];
+    if (part.relief.changed) {
+      ended_ += part.stimulus_before - part.state.stimulus;
+    } else if (!part.relief.passes) {
+      ended_ += part.stimulus_before;
+    }
+  }
 }
 
 void Scene::forget_extremes() noexcept {

@@ -83,6 +83,7 @@ class Scene {
   void store(Part& part, double share) noexcept;
   /// @param ahead  of the hand (OwnWay) [m]
   void lay_reliefs(const Eigen::Vector3d& p, const Eigen::Vector3d& ahead) noexcept;
+  void end_stimuli_of_reliefs() noexcept;
 
   std::vector<Part> parts_;
   std::vector<std::size_t> reliefs_;

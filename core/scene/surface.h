@@ -26,7 +26,8 @@ struct ReliefHere {
   Eigen::Vector3d slope{Eigen::Vector3d::Zero()};  // its gradient in W
   double steepest{0.0};                            // bound of the gradient's length anywhere
   double highest{0.0};                             // bound of the height anywhere [m]
-  bool passes{false};  // the hand moves over its ridges, so that their force is to alternate
+  bool passes{false};   // the hand moves over its ridges, so that their force is to alternate
+  bool changed{false};  // other numbers of a relief came with this tick
 };
 
 /// A wall, box, sphere or cylinder that pushes the hand out along its normal n, with relief h:

@@ -28,7 +28,10 @@ void require_audible(double frequency, double rate) {
 }  // namespace
 
 SineVibration::SineVibration(const SineVibrationParameters& p, const Setting& setting)
-    : force_(p.amplitude * unit(p.direction)), angular_(kFullTurn * p.frequency), phase_(p.phase) {
+    : amplitude_(p.amplitude * unit(p.direction), setting.rate),
+      angular_(kFullTurn * p.frequency),
+      first_phase_(p.phase),
+      phase_(p.phase) {
   require(std::isfinite(p.amplitude) && p.amplitude >= 0.0,
           "Vibration: amplitude must be finite and at least 0");
   require(std::isfinite(p.phase), "Vibration: phase must be finite");
@@ -36,11 +39,20 @@ SineVibration::SineVibration(const SineVibrationParameters& p, const Setting& se
 }
 
 Vector3d SineVibration::force(const Felt& felt, FieldState& state) noexcept {
-  return state.stimulus = std::sin(angular_ * felt.time + phase_) * force_;
+  time_ = felt.time;
+  return state.stimulus = std::sin(angular_ * felt.time + phase_) * amplitude_.next();
+}
+
+void SineVibration::adopt(const SineVibration& before) noexcept {
+  phase_ = before.phase_;
+  if (angular_ != before.angular_) {
+    phase_ += (before.angular_ - angular_) * before.time_;
+  }
+  amplitude_.adopt(before.amplitude_);
 }
 
 NoiseVibration::NoiseVibration(const NoiseVibrationParameters& p, const Setting& setting)
-    : force_(p.rms * std::sqrt(2.0 / kTones) * unit(p.direction)) {
+    : amplitude_(p.rms * std::sqrt(2.0 / kTones) * unit(p.direction), setting.rate) {
   require(std::isfinite(p.rms) && p.rms >= 0.0, "Vibration: rms must be finite and at least 0");
   require_audible(p.lowest, setting.rate);
   require_audible(p.highest, setting.rate);
@@ -67,7 +79,7 @@ Vector3d NoiseVibration::force(const Felt&, FieldState& state) noexcept {
     phasors_.sine[i] = s * step_.cosine[i] + c * step_.sine[i];
     phasors_.cosine[i] = c * step_.cosine[i] - s * step_.sine[i];
   }
-  return state.stimulus = sum * force_;
+  return state.stimulus = sum * amplitude_.next();
 }
 
 Tap::Tap(const TapParameters& p, const Setting& setting)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -24,16 +25,52 @@ struct SineVibrationParameters {
   FieldTraits traits() const { return {}; }
 };
 
+/// The amplitude of a vibration that goes on with other numbers: it goes over to its own within 50
+/// ms, as a step of it would be felt as a knock.
+class Amplitude {
+ public:
+  Amplitude(const Eigen::Vector3d& own, double rate) noexcept : own_(own), step_(20.0 / rate) {}
+  void start() noexcept { left_ = 0.0; }
+  void adopt(const Amplitude& before) noexcept {
+    from_ = before.now();
+    left_ = from_ == own_ ? 0.0 : 1.0;
+  }
+  Eigen::Vector3d next() noexcept {
+    const Eigen::Vector3d amplitude = now();
+    left_ = std::max(left_ - step_, 0.0);
+    return amplitude;
+  }
+
+ private:
+  Eigen::Vector3d now() const noexcept {
+    return left_ > 0.0 ? Eigen::Vector3d(own_ + left_ * left_ * (3.0 - 2.0 * left_) * (from_ - own_))
+                       : own_;
+  }
+
+  Eigen::Vector3d own_;
+  double step_;  // a tick's share of the way
+  Eigen::Vector3d from_{Eigen::Vector3d::Zero()};
+  double left_{0.0};  // of the way from there, 1 to 0
+};
+
 /// f(t) = A sin(2 pi frequency t + phase) u. Active, as all vibrations.
 class SineVibration {
  public:
   SineVibration(const SineVibrationParameters& parameters, const Setting& setting);
+  void start(const PointState&) noexcept {
+    phase_ = first_phase_;
+    amplitude_.start();
+  }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
+  /// Goes on where the one before is.
+  void adopt(const SineVibration& before) noexcept;
 
  private:
-  Eigen::Vector3d force_;
+  Amplitude amplitude_;
   double angular_;
+  double first_phase_;
   double phase_;
+  double time_{0.0};  // of the last tick [s]
 };
 
 struct NoiseVibrationParameters {
@@ -55,16 +92,22 @@ class NoiseVibration {
   static constexpr std::size_t kTones = 32;
 
   NoiseVibration(const NoiseVibrationParameters& parameters, const Setting& setting);
-  void start(const PointState&) noexcept { phasors_ = first_; }
+  void start(const PointState&) noexcept {
+    phasors_ = first_;
+    amplitude_.start();
+  }
   Eigen::Vector3d force(const Felt& felt, FieldState& state) noexcept;
-  void adopt(const NoiseVibration& before) noexcept { phasors_ = before.phasors_; }
+  void adopt(const NoiseVibration& before) noexcept {
+    phasors_ = before.phasors_;
+    amplitude_.adopt(before.amplitude_);
+  }
 
  private:
   struct Phasors {
     std::array<double, kTones> sine;
     std::array<double, kTones> cosine;
   };
-  Eigen::Vector3d force_;  // of one tone
+  Amplitude amplitude_;  // of one tone
   Phasors first_;
   Phasors phasors_;
   Phasors step_;  // of a tick

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "core/base/random.h"
@@ -344,6 +346,73 @@ TEST(SceneTest, TheNextIntervalLeadsTheHandFromWhereItIs) {
     const double moved = 0.059 * u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
     ASSERT_NEAR(second.force(there).x(), 100.0 * moved, 1e-9) << i;
   }
+}
+
+/// Interval without a gap: what is felt goes over to the numbers of the next.
+TEST(SceneTest, AVibrationThatGoesOnWithOtherNumbersMakesNoStep) {
+  const auto largest_step = [](const FieldKind& one, const FieldKind& two) {
+    Scene first({field("buzz", one)}, kRate);
+    first.restart_with(1);
+    Vector3d last = kOrigin;
+    for (int i = 0; i < 503; ++i) {
+      last = first.force({});
+    }
+    Scene second({field("buzz", two)}, kRate);
+    second.start_from(first);
+    second.restart_with(1);
+    double step = 0.0;
+    for (int i = 0; i < 300; ++i) {
+      const Vector3d force = second.force({});
+      step = std::max(step, (force - last).norm());
+      last = force;
+    }
+    return step;
+  };
+  const auto sine = [](double amplitude, double frequency, double phase) {
+    return SineVibrationParameters{{0.0, 1.0, 0.0}, amplitude, frequency, phase};
+  };
+  constexpr double kTurn = 2.0 * std::numbers::pi / kRate;  // of 1 Hz in a tick
+  EXPECT_LT(largest_step(sine(0.5, 20.5, 0.0), sine(5.0, 20.5, 0.0)), 1.1 * 5.0 * 20.5 * kTurn);
+  EXPECT_LT(largest_step(sine(1.0, 20.5, 0.0), sine(1.0, 35.0, 0.0)), 35.0 * kTurn);
+  EXPECT_LT(largest_step(sine(1.0, 20.5, 0.0), sine(1.0, 20.5, 2.0)), 20.5 * kTurn);
+  const auto noise = [](double rms, std::uint64_t seed) {
+    return NoiseVibrationParameters{{0.0, 1.0, 0.0}, rms, 10.0, 30.0, seed};
+  };
+  const double natural = largest_step(noise(1.0, 1), noise(1.0, 1));
+  EXPECT_LT(largest_step(noise(0.2, 1), noise(1.0, 2)), 1.5 * natural);
+}
+
+/// The force of ridges under a moving hand is a stimulus of their surface.
+TEST(SceneTest, RidgesThatEndOrChangeUnderAMovingHandAreKnownOnTheNextTick) {
+  const auto ridged = [](double amplitude) {
+    return std::vector<Field>{
+        test::surface(HalfSpace{}),
+        field("ridges", GratingParameters{"floor", Vector3d::UnitX(), amplitude, 0.004})};
+  };
+  const auto stroke = [](Scene& scene, int from, int ticks) {
+    for (int i = from; i < from + ticks; ++i) {
+      scene.force({{1e-4 * i, -0.002, 0.0}, {0.1, 0.0, 0.0}});
+    }
+    return scene.state(0).stimulus;
+  };
+  Scene scene(ridged(0.0004), kRate);
+  scene.restart_with(0b11);
+  const Vector3d before = stroke(scene, 0, 613);
+  ASSERT_GT(before.norm(), 0.05);
+  EXPECT_EQ(scene.ended(), kOrigin);
+  Scene next(ridged(0.0001), kRate);
+  next.start_from(scene);
+  next.restart_with(0b11);
+  const Vector3d after = stroke(next, 613, 1);
+  EXPECT_LT((next.ended() - (before - after)).norm(), 1e-12) << "other ridges";
+  Scene same(ridged(0.0001), kRate);
+  same.start_from(next);
+  same.restart_with(0b11);
+  const Vector3d last = stroke(same, 614, 1);
+  EXPECT_EQ(same.ended(), kOrigin) << "the same ridges";
+  same.switch_to(0b01);
+  stroke(same, 615, 1);
+  EXPECT_LT((same.ended() - last).norm(), 1e-12) << "no ridges";
 }
 
 TEST(SceneTest, AStimulusThatIsCutOffIsKnownOnTheNextTick) {
