@@ -281,7 +281,13 @@ void CuePlayer::still() {
   const std::lock_guard lock(impl_->mutex);
   impl_->stilled = true;
   for (auto* asked : {&impl_->asked_before, &impl_->asked}) {
-    std::erase_if(*asked, [this](const auto& each) { return impl_->is_felt(each.first); });
+    std::erase_if(*asked, [this](const auto& each) {
+      const bool felt = impl_->is_felt(each.first);
+      if (felt) {
+        impl_->started.push_back({each.second, -1});
+      }
+      return felt;
+    });
   }
 }
 

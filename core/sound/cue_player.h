@@ -11,10 +11,10 @@
 
 namespace haptrial::sound {
 
-/// A sound, or a text that is said, whose first samples the card has taken.
+/// A sound, or a text that is said, whose first samples the card has taken, or never will.
 struct StartedCue {
   std::uint64_t ticket{0};    // that it was started with
-  std::int64_t handed_ns{0};  // when, on the clock that the player was given
+  std::int64_t handed_ns{0};  // when, on the clock that the player was given; -1: stilled before
 };
 
 /// Plays the sounds of a session on the sound card. Any thread but the servo thread may call; what

@@ -6,15 +6,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "core/base/definition/number_source.h"
 #include "core/base/definition/table.h"
@@ -24,6 +27,7 @@
 #include "core/sound/read_cues.h"
 #include "tests/support/message_of.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/wait.h"
 
 namespace haptrial::sound {
 namespace {
@@ -166,6 +170,25 @@ TEST(ActuatorTest, AVibrationIsStilledAndASoundIsNot) {
             0.0);
   EXPECT_GT(largest({channels[0].begin() + static_cast<std::ptrdiff_t>(end), channels[0].end()}),
             0.1);
+}
+
+TEST(ActuatorTest, AVibrationThatIsStilledBeforeItBeginsIsToldOf) {
+  CueSet set = read(buzz("type = \"tone\"\nfrequency = 250.0\nduration = 0.2\namplitude = 15.0\n"));
+  set.device = "null";
+  CuePlayer player(set, 1, [] { return 7; });
+  std::vector<StartedCue> told;
+  constexpr std::uint64_t kTimes = 40;
+  for (std::uint64_t ticket = 0; ticket < kTimes; ++ticket) {
+    player.start(0, ticket);
+    player.still();
+    test::wait_until([&] {
+      std::ranges::copy(player.take_started(), std::back_inserter(told));
+      return told.size() > ticket;
+    });
+    EXPECT_EQ(told.at(ticket).ticket, ticket);
+  }
+  const auto never = [](const StartedCue& cue) { return cue.handed_ns == -1; };
+  EXPECT_GT(std::ranges::count_if(told, never), 0) << "the card takes 5 ms at once";
 }
 
 TEST(ActuatorTest, SoundsOfATrialArePlayedInThePlaceOfThoseBefore) {
