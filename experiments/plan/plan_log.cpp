@@ -40,10 +40,13 @@ PlanEntry entry_of(const std::string& line) {
   return entry;
 }
 
+/// A line whose end is missing was cut off as it was written, and is none.
+std::string whole_lines(const std::string& text) { return text.substr(0, text.rfind('\n') + 1); }
+
 PlanLog log_from(const std::string& text, const std::string& plan_digest) {
   PlanLog log;
   log.head = plan_digest;
-  std::istringstream lines(text);
+  std::istringstream lines(whole_lines(text));
   for (std::string line; std::getline(lines, line);) {
     const PlanEntry entry = entry_of(line);
     if (log.broken.empty() && entry.link != link_of(log.head, entry)) {
@@ -78,7 +81,12 @@ class LockedLog {
   LockedLog(const LockedLog&) = delete;
   LockedLog& operator=(const LockedLog&) = delete;
 
+  /// Adds a line behind the whole ones; what is left of one that was cut off goes.
   void add(const std::string& line) const {
+    const std::size_t whole = whole_lines(file_text(file_)).size();
+    if (::ftruncate(descriptor_, static_cast<off_t>(whole)) != 0) {
+      fail();
+    }
     const ssize_t written = ::write(descriptor_, line.data(), line.size());
     if (written != static_cast<ssize_t>(line.size()) || ::fsync(descriptor_) != 0) {
       fail();

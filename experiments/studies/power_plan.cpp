@@ -1,7 +1,9 @@
 #include "experiments/studies/power_plan.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <functional>
 #include <regex>
 
 #include "core/base/definition/schema.h"
@@ -117,14 +119,24 @@ void check_new_power(Table& root) {
 
 namespace {
 
+/// Whether it is a day of the calendar, as 2036-12-31.
+bool is_date(const std::string& text) {
+  static const std::regex form("([0-9]{4})-([0-9]{2})-([0-9]{2})");
+  std::smatch parts;
+  return std::regex_match(text, parts, form) &&
+         std::chrono::year_month_day(std::chrono::year(std::stoi(parts[1])),
+                                     std::chrono::month(static_cast<unsigned>(std::stoi(parts[2]))),
+                                     std::chrono::day(static_cast<unsigned>(std::stoi(parts[3]))))
+             .ok();
+}
+
 void check_plan_table(Table& table, PlanTable& plan) {
-  static const std::regex date("[0-9]{4}-(0[1-9]|1[0-2])-(0[1-9]|[12][0-9]|3[01])");
-  if (!plan.retain_until.empty() && !std::regex_match(plan.retain_until, date)) {
+  if (!plan.retain_until.empty() && !is_date(plan.retain_until)) {
     table.reject("retain_until", "'" + plan.retain_until + "'", "a date such as 2036-12-31");
   }
   const bool whole = std::ranges::all_of(
       plan.looks, [](double look) { return look >= 1.0 && look == std::floor(look); });
-  if (!whole || !std::ranges::is_sorted(plan.looks)) {
+  if (!whole || std::ranges::adjacent_find(plan.looks, std::greater_equal()) != plan.looks.end()) {
     table.reject("looks", "a list with another number", "whole numbers of participants, rising");
   }
   if (plan.effect && *plan.effect == 0.0) {

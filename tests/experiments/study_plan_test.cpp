@@ -122,8 +122,15 @@ TEST_F(StudyPlanTest, MistakesOfATableAreNamed) {
   EXPECT_THAT(refused("retain_until = \"soon\"\n"), HasSubstr("a date such as 2036-12-31"));
   EXPECT_THAT(refused("looks = [6, 4]\n"), HasSubstr("whole numbers of participants, rising"));
   EXPECT_THAT(refused("looks = [2.5]\n"), HasSubstr("whole numbers of participants, rising"));
+  EXPECT_THAT(refused("looks = [4, 4]\n"), HasSubstr("whole numbers of participants, rising"));
+  EXPECT_THAT(refused("retain_until = \"2027-02-29\"\n"), HasSubstr("a date such as"));
   EXPECT_THAT(refused("effect = 0.0\n"), HasSubstr("other than 0"));
   EXPECT_THAT(refused("hypothesis = []\n"), HasSubstr("plan.hypothesis is not a known key"));
+  write_study("looks = [6, 30]\n");
+  const auto done = run("plan study.toml");
+  EXPECT_EQ(done.status, 2);
+  EXPECT_THAT(done.errors,
+              HasSubstr("plan.looks has 30; allowed: up to the 12 participants of the study"));
 }
 
 TEST_F(StudyPlanTest, ReportsOfForcesOpenWithIt) {

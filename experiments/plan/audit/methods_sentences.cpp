@@ -90,6 +90,24 @@ std::string all_values(const std::vector<MethodsSession>& sessions, Value&& valu
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
+/// @param before  the first figure
+std::string figure_words(const device::CertifiedForce& c, const char* before, const char* force,
+                         const char* stiffness) {
+  std::string words;
+  const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
+    if (value) {
+      words += fmt::format("; {}{} {:.4g}{}", words.empty() ? before : "", name, *value, unit);
+    }
+  };
+  add("gain", c.gain, "");
+  add("dead zone", c.dead_zone, force);
+  add("friction", c.friction, force);
+  add("force noise", c.force_noise, force);
+  add("delay", c.delay, " s");
+  add("stiffest passive wall", c.stiffest_wall, stiffness);
+  return words;
+}
+
 std::string certificate_words(const protocols::Definition& d) {
   if (!d.certificate) {
     return "No certificate of the device is recorded.";
@@ -97,15 +115,13 @@ std::string certificate_words(const protocols::Definition& d) {
   const device::Certificate& c = *d.certificate;
   std::string words = fmt::format("The device's certificate {} ({}{})", c.file, c.device,
                                   c.simulated ? ", simulated" : "");
-  const auto add = [&](const char* name, const std::optional<double>& value, const char* unit) {
-    words += value ? fmt::format("; {} {:.4g}{}", name, *value, unit) : std::string();
-  };
-  add("gain", c.gain, "");
-  add("dead zone", c.dead_zone, " N");
-  add("friction", c.friction, " N");
-  add("force noise", c.force_noise, " N");
-  add("delay", c.delay, " s");
-  add("stiffest passive wall", c.stiffest_wall, " N/m");
+  words += figure_words(c, "", " N", " N/m");
+  if (c.rotation) {
+    words += figure_words(*c.rotation, "of the rotation: ", " N·m", " N·m/rad");
+  }
+  if (c.grip) {
+    words += figure_words(*c.grip, "of the grip: ", " N", " N/m");
+  }
   return words + ".";
 }
 

@@ -187,6 +187,11 @@ StudyPlan make_plan(const Experiment& experiment, const fs::path& simulation) {
                         counted(plan.participants(), "participant has", "participants have"))
           : table.stopping;
   for (const double look : table.looks) {
+    if (look > plan.participants()) {
+      throw InputError(fmt::format("{}: plan.looks has {}; allowed: up to the {} of the study",
+                                   plan.definition_name, look,
+                                   counted(plan.participants(), "participant", "participants")));
+    }
     plan.looks.push_back(static_cast<int>(look));
   }
   add_early_end(d, plan);

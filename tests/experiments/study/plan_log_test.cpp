@@ -156,6 +156,22 @@ TEST_F(PlanLogTest, EveryChangeBreaksTheChain) {
   EXPECT_THAT(read_plan_log(plan_).broken, HasSubstr("the plan"));
 }
 
+TEST_F(PlanLogTest, ALineThatWasCutOffAsItWasWrittenIsNone) {
+  note_in_log(plan_, kAnalysed, "people=1");
+  note_in_log(plan_, kAnalysed, "people=2");
+  const std::string whole = file_text(log_beside(plan_));
+  const std::size_t second = whole.find('\n') + 1;
+  for (const std::size_t left : {second + 1, second + 30, whole.size() - 1}) {
+    write_text(log_beside(plan_), whole.substr(0, left));
+    EXPECT_EQ(read_plan_log(plan_).broken, "") << left;
+    note_in_log(plan_, kAnalysed, "people=3");
+    const PlanLog log = read_plan_log(plan_);
+    EXPECT_EQ(log.broken, "") << left;
+    ASSERT_EQ(log.entries.size(), 2u) << left;
+    EXPECT_EQ(log.entries[1].values("people"), std::vector<std::string>{"3"});
+  }
+}
+
 TEST_F(PlanLogTest, APlanIsTakenToItsSessionsOnce) {
   const fs::path out = folder_ / "out";
   fs::create_directory(out);
