@@ -73,6 +73,12 @@ WholeFile::WholeFile(fs::path file, bool overwrite, std::string_view ending)
   if (fs::is_directory(file_, unknown)) {
     throw InputError(fmt::format("{}: is a folder; give the name of a file", file_.string()));
   }
+  if (fs::exists(file_, unknown) && !fs::is_regular_file(file_, unknown)) {
+    throw InputError(
+        fmt::format("{}: is no regular file, which would be replaced; choose another "
+                    "name",
+                    file_.string()));
+  }
   if (!overwrite_ && is_there(file_)) {
     throw InputError(fmt::format("{}: exists already; choose another name", file_.string()));
   }

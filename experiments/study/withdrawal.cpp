@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -65,6 +66,46 @@ std::optional<record::SessionInfo> info_of(const fs::path& file) {
   }
 }
 
+/// The identifier in the name of a session file: "P01-b" of "P01-b-session-2.h5.partial".
+std::string identifier_in(const fs::path& file) {
+  static const std::regex kName(R"((.*?)(-session-[0-9]+)?\.h5(\..*)?)");
+  const std::string name = file.filename().string();
+  std::smatch parts;
+  return std::regex_match(name, parts, kName) ? parts[1].str() : name;
+}
+
+/// A participant in texts and names of files. Another's identifier may go on where this one ends:
+/// "P01-b" names nobody called P01.
+class NamedSubject {
+ public:
+  /// @param files  of whose sessions the other identifiers are known
+  NamedSubject(std::string subject, const std::vector<fs::path>& files)
+      : subject_(std::move(subject)) {
+    for (const fs::path& file : files) {
+      if (is_session_file(file)) {
+        const auto info = info_of(file);
+        const std::string other = info ? info->subject : identifier_in(file);
+        if (other.size() > subject_.size() && has_word(other, subject_)) {
+          longer_.insert(other);
+        }
+      }
+    }
+  }
+  const std::string& identifier() const { return subject_; }
+  bool is_in(std::string text) const {
+    for (const std::string& other : longer_) {
+      for (auto at = text.find(other); at != text.npos; at = text.find(other, at + 1)) {
+        text.replace(at, other.size(), other.size(), '_');
+      }
+    }
+    return has_word(text, subject_);
+  }
+
+ private:
+  std::string subject_;
+  std::set<std::string, std::greater<>> longer_;  // "P01-b-c" before "P01-b"
+};
+
 bool is_below(const fs::path& file, const fs::path& folder) {
   return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first ==
          folder.end();
@@ -119,23 +160,25 @@ class OwnStudy {
 };
 
 /// Finds the participant's sessions; those of another study are among the others.
-void find_sessions(const std::vector<fs::path>& files, const std::string& subject,
+void find_sessions(const std::vector<fs::path>& files, const NamedSubject& subject,
                    const OwnStudy& study, Withdrawal& found) {
   for (const fs::path& file : files) {
     if (!is_session_file(file)) {
       continue;
     }
     const auto info = info_of(file);
-    if (info ? info->subject != subject : !has_word(file.filename().string(), subject)) {
-      continue;  // the name tells of a file that cannot be read
-    }
-    if (info && !study.has(*info)) {
+    // The name of a file that cannot be read tells whose it is.
+    const std::string whose = info ? info->subject : identifier_in(file);
+    const bool own = whose == subject.identifier();
+    if (own ? info && !study.has(*info) : !info && subject.is_in(whose)) {
       found.others.push_back(file);
+    }
+    if (!own || (info && !study.has(*info))) {
       continue;
     }
     if (file.extension() == ".partial" && record::FileLock::taken(file)) {
       throw InputError(fmt::format("{}: a session of {} is being recorded; end it first",
-                                   file.string(), subject));
+                                   file.string(), subject.identifier()));
     }
     found.sessions.push_back(file);
   }
@@ -149,14 +192,14 @@ bool states_starts(const fs::path& file) {
 }
 
 /// When the participant's sessions began, as a file of an export says: "2026-11-20T09:30:00Z".
-std::set<std::string> stated_starts(const fs::path& file, const std::string& subject) {
+std::set<std::string> stated_starts(const fs::path& file, const NamedSubject& subject) {
   constexpr std::size_t kLooked = 1'000'000;  // [bytes]
   static const std::regex kTime(R"(\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ)");
-  const bool all = has_word(file.string(), subject);
+  const bool all = subject.is_in(file.string());
   std::set<std::string> starts;
   std::istringstream lines(file_head(file, kLooked));
   for (std::string line; std::getline(lines, line);) {
-    if (all || has_word(line, subject)) {
+    if (all || subject.is_in(line)) {
       starts.insert(std::sregex_token_iterator(line.begin(), line.end(), kTime),
                     std::sregex_token_iterator());
     }
@@ -180,7 +223,7 @@ fs::path export_folder(const fs::path& file) {
 /// Folders outside the study's own that were exported from another one: they say when sessions of
 /// the participant began, but none of those that are withdrawn.
 std::vector<fs::path> foreign_exports(const std::vector<fs::path>& files, const fs::path& study,
-                                      const std::string& subject,
+                                      const NamedSubject& subject,
                                       const std::vector<fs::path>& sessions) {
   std::set<std::string> own;
   for (const fs::path& session : sessions) {
@@ -211,18 +254,19 @@ bool has_text(const fs::path& file) {
 }
 
 /// Whether a text names a participant. A plain number stands in texts for other things, too.
-bool text_names(const std::string& text, const std::string& subject) {
-  const bool number = std::ranges::all_of(subject, [](char c) { return c >= '0' && c <= '9'; });
-  return !number && has_word(text, subject);
+bool text_names(const std::string& text, const NamedSubject& subject) {
+  const bool number =
+      std::ranges::all_of(subject.identifier(), [](char c) { return c >= '0' && c <= '9'; });
+  return !number && subject.is_in(text);
 }
 
 /// Whether the way from one of the given folders to a file names a participant.
 bool path_names(const fs::path& file, const std::vector<fs::path>& folders,
-                const std::string& subject) {
+                const NamedSubject& subject) {
   const auto given =
       std::ranges::find_if(folders, [&](const fs::path& folder) { return is_below(file, folder); });
   const fs::path way = given == folders.end() ? file : file.lexically_relative(*given);
-  return has_word(way.string(), subject);
+  return subject.is_in(way.string());
 }
 
 /// Participants of the session files that can be read, and files of other participants in whose
@@ -232,7 +276,7 @@ struct OtherSessions {
   std::vector<fs::path> naming;
 };
 
-bool names_in(const record::SessionReader& reader, const std::string& subject) {
+bool names_in(const record::SessionReader& reader, const NamedSubject& subject) {
   const auto events = reader.events();
   return text_names(reader.info().definition, subject) ||
          std::ranges::any_of(events, [&](const record::EventRow& event) {
@@ -240,7 +284,7 @@ bool names_in(const record::SessionReader& reader, const std::string& subject) {
          });
 }
 
-OtherSessions other_sessions(const std::vector<fs::path>& files, const std::string& subject) {
+OtherSessions other_sessions(const std::vector<fs::path>& files, const NamedSubject& subject) {
   OtherSessions others;
   for (const fs::path& file : files) {
     if (!is_session_file(file)) {
@@ -248,14 +292,14 @@ OtherSessions other_sessions(const std::vector<fs::path>& files, const std::stri
     }
     try {
       const record::SessionReader reader(file);
-      if (reader.info().subject != subject) {
+      if (reader.info().subject != subject.identifier()) {
         others.participants.insert(reader.info().subject);
         if (names_in(reader, subject)) {
           others.naming.push_back(file);
         }
       }
     } catch (const std::exception&) {
-      continue;  // is_of() has judged it by its name
+      continue;  // find_sessions() has judged it by its name
     }
   }
   return others;
@@ -310,7 +354,7 @@ fs::file_time_type first_written(const std::vector<fs::path>& files) {
 /// stimuli and notes stay.
 /// @param foreign  folders in which nothing was made from the participant's sessions
 void sort_others(const std::vector<fs::path>& files, const std::vector<fs::path>& folders,
-                 const std::string& subject, const std::vector<fs::path>& foreign,
+                 const NamedSubject& subject, const std::vector<fs::path>& foreign,
                  Withdrawal& found) {
   const fs::file_time_type first = first_written(found.sessions);
   const auto is_foreign = [&](const fs::path& file) {
@@ -424,14 +468,15 @@ bool has_word(std::string_view text, std::string_view word) {
 Withdrawal find_withdrawal(const std::vector<fs::path>& folders, const std::string& subject,
                            const ProtocolOf& protocol_of) {
   const std::vector<fs::path> files = files_below(folders);
+  const NamedSubject named(subject, files);
   Withdrawal found;
-  find_sessions(files, subject, OwnStudy(folders.front(), protocol_of), found);
+  find_sessions(files, named, OwnStudy(folders.front(), protocol_of), found);
   if (found.sessions.empty()) {
     throw InputError(
         fmt::format("{} has no session file in {}", subject, folders.front().string()));
   }
-  sort_others(files, folders, subject,
-              foreign_exports(files, folders.front(), subject, found.sessions), found);
+  sort_others(files, folders, named, foreign_exports(files, folders.front(), named, found.sessions),
+              found);
   find_tables(files, folders.front(), found);
   return found;
 }

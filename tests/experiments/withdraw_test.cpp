@@ -107,6 +107,33 @@ TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
             "participant,reason\nS020,slept\n");
 }
 
+TEST_F(WithdrawTest, FilesOfSomebodyWithALongerIdentifierStay) {
+  const std::vector<std::string> theirs{"S02-b.h5.partial", "S02-b-own.csv",
+                                        "export/S02-b/curve.csv", "replay-S02-b.mp4",
+                                        "S02-b-session-2.h5"};
+  const std::vector<std::string> own{"S02-session-2.h5.partial", "S02-own.csv",
+                                     "export/S02/curve.csv", "replay-S02.mp4"};
+  for (const char* folder : {"out/mine/export/S02-b", "out/mine/export/S02"}) {
+    fs::create_directories(folder_ / folder);
+  }
+  for (const auto* names : {&theirs, &own}) {
+    for (const std::string& name : *names) {
+      write_text(folder_ / "out/mine" / name, "torn");
+    }
+  }
+  write_text(folder_ / "out/mine/copy-of-S02.h5", "torn");
+  const auto done = run("withdraw out/mine S02 --yes");
+  EXPECT_EQ(done.status, 0) << done.errors;
+  EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: "
+                                     "out/mine/copy-of-S02.h5"));
+  for (const std::string& name : theirs) {
+    EXPECT_TRUE(fs::exists(folder_ / "out/mine" / name)) << name;
+  }
+  for (const std::string& name : own) {
+    EXPECT_FALSE(fs::exists(folder_ / "out/mine" / name)) << name;
+  }
+}
+
 TEST_F(WithdrawTest, WhatRatersSaidOfOthersStays) {
   const std::string head = "session,procedure,rater,score,simulated,comment\n";
   write_text(folder_ / "out/mine/ratings.csv",

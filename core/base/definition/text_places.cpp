@@ -106,8 +106,9 @@ std::size_t header_end(std::string_view text, std::size_t begin) {
   std::size_t at = begin;
   char quote = '\0';
   for (; at < text.size() && (quote != '\0' || text[at] != ']'); ++at) {
-    if (quote != '\0') {
-      at += quote == '"' && text[at] == '\\' ? 1 : 0;
+    if (quote == '"' && text[at] == '\\') {
+      ++at;  // what is escaped ends no text
+    } else if (quote != '\0') {
       quote = text[at] == quote ? '\0' : quote;
     } else if (text[at] == '"' || text[at] == '\'') {
       quote = text[at];

@@ -67,6 +67,14 @@ TEST(WholeFileTest, TheTargetOfALinkIsReplaced) {
   EXPECT_TRUE(fs::is_symlink(folder / "again.toml"));
 }
 
+TEST(WholeFileTest, APipeIsNotReplaced) {
+  const test::TemporaryFolder folder;
+  const fs::path pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_THROW(write_whole(pipe, "new"), InputError);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
 TEST(WholeFileTest, AReplacedFileKeepsItsMode) {
   const test::TemporaryFolder folder;
   const fs::path file = folder / "file";

@@ -406,6 +406,14 @@ TEST(EditedText, RemovedKeysLeaveCommentsAndOtherKeys) {
   EXPECT_THAT(without("blocks.easy"), HasSubstr("# the easy one\n\n# the hard one\n[[blocks]]"));
 }
 
+TEST(EditedText, AQuoteInTheNameOfATableHidesNoOtherTable) {
+  constexpr const char* kPages =
+      "[pages.\"at 5\\\" off\"]\ntext = \"a\"\n\n[pages.hand]\ntext = \"b\"\n\n[envelope]\n"
+      "max_force = 3.0\n";
+  EXPECT_EQ(without_key(kPages, "a.toml", "pages.at 5\" off"),
+            "[pages.hand]\ntext = \"b\"\n\n[envelope]\nmax_force = 3.0\n");
+}
+
 TEST(EditedText, EntriesAreAddedBelowTheLast) {
   EXPECT_EQ(with_new_entry(kText, "a.toml", "blocks"), std::string(kText) + "\n[[blocks]]\n");
   EXPECT_THAT(with_new_entry(kText, "a.toml", "blocks.easy.cues"),
