@@ -68,7 +68,7 @@ analysis::StudyResult analyze_curves(const CurveStudy& study,
   add_subjects(result, trials);
   result.statistics =
       study_statistics(result.scores, questions_of(result.factors, study.plan, jobs));
-  result.frequencies = analysis::recall_by_frequency(
+  result.frequencies = analysis::recall_over_time(
       analysis::recalled_spectra(result.scores, spectra), result.statistics.conditions);
   for (const auto& [which, at] : analysis::notable(result.scores)) {
     result.recalls.push_back(recall_picture(

@@ -289,6 +289,11 @@ class RowsOfTrials final : public ImportedTrials {
                                 "{} of the same subject and trial has others",
                                 table_.line(first_row)));
     }
+    if (!time_ && rows_.rate(row) != rows_.rate(first_row)) {
+      throw InputError(fmt::format("{}:{}: has another rate than line {} of the same subject and "
+                                   "trial; allowed: one rate in each trial, or a time in each row",
+                                   table_.name(), table_.line(row), table_.line(first_row)));
+    }
   }
 
   void require_increasing(const std::vector<double>& times,

@@ -140,11 +140,18 @@ Figure frequency_figure(const std::vector<RecallBand>& bands, const Shown& shown
 
 }  // namespace
 
-FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool simulated) {
+FindingList recall_frequency_findings(const Defined<std::vector<RecallBand>>& frequencies,
+                                      bool simulated) {
   FindingList list{"recall_by_frequency", "Recall by frequency"};
-  if (bands.empty()) {
+  if (!frequencies) {
+    Document why;
+    why.paragraph(fmt::format("Recall by frequency is not defined: {}.", frequencies.because()));
+    list.blocks = why.blocks;
+  }
+  if (!frequencies || frequencies->empty()) {
     return list;
   }
+  const std::vector<RecallBand>& bands = *frequencies;
   FindingTable values{"conditions", "Recalled against taught force by condition"};
   FindingTable tests{"tests", "Tests by condition"};
   for (const RecallBand& band : bands) {
@@ -171,7 +178,8 @@ FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool
       "where as much force came back as was taught, the phase is below 0 where it came late, and "
       "the coherence is the share of the recalled force that follows the taught one linearly; "
       "without any relation it would still be about one over the number of trials (by chance). "
-      "Participants with one trial under a condition are left out of it. Means and 95 % intervals "
+      "Participants with one trial under a condition, or who recalled nothing at a frequency, are "
+      "left out of it. Means and 95 % intervals "
       "are over participants, of the gain's logarithm and of Fisher's z of the coherence; a phase "
       "has none where participants' phases have no common direction (Rayleigh's test). Conditions "
       "are compared within participants, with the correction of Greenhouse and Geisser and Holm's "

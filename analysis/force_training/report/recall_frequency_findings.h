@@ -13,7 +13,8 @@ namespace haptrial::analysis {
 /// Gain, phase and coherence of recalled forces by frequency and condition, their tests and
 /// figures; an empty list if there are no bands.
 /// @param simulated  figures say so
-FindingList recall_frequency_findings(const std::vector<RecallBand>& bands, bool simulated);
+FindingList recall_frequency_findings(const Defined<std::vector<RecallBand>>& frequencies,
+                                      bool simulated);
 
 /// Two curves and what their alignment made of them: the target, the applied curve as it was and as
 /// it is warped, and lines between some of the paired samples. Source: Morris 2006, Figures 26, 27.

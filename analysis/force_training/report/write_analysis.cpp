@@ -35,8 +35,10 @@ void write_analysis(const StudyResult& study, const fs::path& folder, int paper,
   std::ranges::move(learning_figures(study.learned, study.simulated()),
                     std::back_inserter(figures));
   write_findings(own, staging, figures);
-  if (by_frequency.has_values()) {
+  if (by_frequency.has_values() || !study.frequencies) {
     lists.insert(lists.begin(), by_frequency);
+  }
+  if (by_frequency.has_values()) {
     figures.insert(figures.end(), by_frequency.figures.begin(), by_frequency.figures.end());
     staging.write(
         "recall_by_frequency.csv",

@@ -1,5 +1,7 @@
 #include "analysis/force_training/study/recall_frequency.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,6 +18,7 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kInstants = 1024;  // of a run
 constexpr double kLeastPower = 0.01;     // of the taught patterns, for a band
+constexpr double kLeastResponse = 1e-9;  // below it nothing came back, which has no phase
 
 std::vector<Complex> coefficients_of(const std::vector<double>& curve) {
   const double mean =
@@ -184,16 +187,15 @@ std::vector<double> taught_power(std::span<const RecalledSpectra> spectra) {
   return power;
 }
 
-/// How long a cycle a run takes, on average [s].
-double mean_period(std::span<const RecalledSpectra> spectra) {
-  double sum = 0.0, count = 0.0;
+/// How long a cycle a run takes in each recall [s].
+std::vector<double> periods_of(std::span<const RecalledSpectra> spectra) {
+  std::vector<double> periods;
   for (const RecalledSpectra& each : spectra) {
     for (const RecallSpectrum* recall : each.recalls) {
-      sum += recall->period;
-      count += 1.0;
+      periods.push_back(recall->period);
     }
   }
-  return sum / count;
+  return periods;
 }
 
 RecallBand band_of(std::span<const RecalledSpectra> spectra,
@@ -204,7 +206,10 @@ RecallBand band_of(std::span<const RecalledSpectra> spectra,
     std::vector<BandValue>& values = by_condition.emplace_back();
     for (const RecalledSpectra& each : spectra) {
       if (each.condition == condition && each.recalls.size() > 1) {
-        values.push_back({&each, recall_response(each.recalls, cycle)});
+        const RecallResponse response = recall_response(each.recalls, cycle);
+        if (std::abs(response.response) > kLeastResponse) {
+          values.push_back({&each, response});
+        }
       }
     }
     band.conditions.push_back(at_frequency(condition, values));
@@ -256,14 +261,32 @@ RecallResponse recall_response(std::span<const RecallSpectrum* const> recalls, s
   return found;
 }
 
+Defined<std::vector<RecallBand>> recall_over_time(std::span<const RecalledSpectra> spectra,
+                                                  const std::vector<std::string>& conditions) {
+  constexpr double kAlike = 1.1;  // the longest run over the shortest
+  const std::vector<double> periods = periods_of(spectra);
+  if (!periods.empty()) {
+    const auto [shortest, longest] = std::ranges::minmax(periods);
+    if (longest > kAlike * shortest) {
+      return Undefined{fmt::format(
+          "runs take {:.3g} to {:.3g} s, so that their cycles are different frequencies", shortest,
+          longest)};
+    }
+  }
+  return recall_by_frequency(spectra, conditions);
+}
+
 std::vector<RecallBand> recall_by_frequency(std::span<const RecalledSpectra> spectra,
                                             const std::vector<std::string>& conditions) {
   std::vector<RecallBand> bands;
+  const std::vector<double> periods = periods_of(spectra);
+  const double period =
+      std::accumulate(periods.begin(), periods.end(), 0.0) / static_cast<double>(periods.size());
   const std::vector<double> power = taught_power(spectra);
   for (std::size_t k = 0; k < kRecallCycles; ++k) {
     if (power[k] >= kLeastPower) {
       RecallBand band = band_of(spectra, conditions, k);
-      band.frequency = static_cast<double>(k + 1) / mean_period(spectra);
+      band.frequency = static_cast<double>(k + 1) / period;
       band.power = power[k];
       bands.push_back(std::move(band));
     }

@@ -53,7 +53,8 @@ struct RecallResponse {
 /// @param cycle  from 0, the place among the coefficients
 RecallResponse recall_response(std::span<const RecallSpectrum* const> recalls, std::size_t cycle);
 
-/// A condition at a frequency, over participants with at least two trials.
+/// A condition at a frequency, over participants with at least two trials who recalled something
+/// there.
 struct RecallAtFrequency {
   std::string condition;
   std::size_t people{0};
@@ -79,11 +80,18 @@ struct RecallBand {
 
 /// Recall by frequency: bands that hold at least 1 % of the power of the taught patterns, by rising
 /// frequency; none if there are no recalls. Which bands there are follows from the patterns alone.
+/// A frequency is that of the mean run.
 /// @param spectra     one for each participant under each condition with a recall
 /// @param conditions  in the order of the result
 /// Source: Morris 2006, §4.3 (curves) and §4.5 (the question); Bendat and Piersol 2010, chapter 9.
 std::vector<RecallBand> recall_by_frequency(std::span<const RecalledSpectra> spectra,
                                             const std::vector<std::string>& conditions);
+
+/// Recall by frequency of patterns that stand over time: not defined if runs differ in length by more
+/// than a tenth, as a cycle of them is no one frequency. A run at the participant's own pace has
+/// its pattern over the path, and differs.
+Defined<std::vector<RecallBand>> recall_over_time(std::span<const RecalledSpectra> spectra,
+                                                  const std::vector<std::string>& conditions);
 
 /// How one recall was aligned with its target, on the common time base.
 /// Source: Morris 2006, §4.3, Figures 26 and 27.

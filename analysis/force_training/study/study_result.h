@@ -60,9 +60,9 @@ struct StudyResult {
   StudyStatistics statistics;
   /// The same tests of path_error [mm], where the path was recalled, too.
   std::optional<StudyStatistics> path{};
-  std::vector<RecallBand> frequencies;                          // by rising frequency
-  TrackingSummary tracking;                                     // over all participants
-  std::vector<RecallPicture> recalls;                           // best, median, worst
+  Defined<std::vector<RecallBand>> frequencies{std::vector<RecallBand>{}};  // rising
+  TrackingSummary tracking;                                                 // over all participants
+  std::vector<RecallPicture> recalls;                                       // best, median, worst
   std::vector<record::StimulusRow> stimulus;                    // first block of the first session
   std::vector<std::pair<std::string, std::string>> parameters;  // of the scores: name, value
   std::vector<std::string> remarks;  // sentences for the report: what is missing from the study

@@ -168,7 +168,8 @@ void add_reach_quality(Document& document, const TrialsResult& result) {
   }
   add_table(document, reach_quality_findings(*result.reaching), false);
   document.paragraph(
-      "Reaches without an onset have no metrics and take part in nothing; all others take part.");
+      "Reaches without an onset have no metrics and take part in nothing; those that never "
+      "slowed have no movement time, end and throughput; all others take part.");
 }
 
 void add_reaching_methods(Document& document, const ReachingPlan& plan) {

@@ -1,5 +1,8 @@
 #include "analysis/psychophysics/study/reach_quantities.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -130,22 +133,90 @@ std::optional<double> throughput_of_size(const std::vector<const StudyReach*>& r
   return std::log2(way / n / width + 1.0) / (time / n);
 }
 
-/// Mean over the combinations of distance and size, to a tenth of a millimetre.
-std::optional<double> throughput(const std::vector<const StudyReach*>& reaches) {
-  std::map<std::pair<long, long>, std::vector<const StudyReach*>> sizes;
+using Size = std::pair<long, long>;  // distance and radius of the target, in tenths of a mm
+
+/// Throughput by combination of distance and size.
+std::map<Size, double> throughputs(const std::vector<const StudyReach*>& reaches) {
+  std::map<Size, std::vector<const StudyReach*>> sizes;
   const auto tenths = [](double length) { return std::lround(1e4 * length); };
   for (const StudyReach* reach : reaches) {
     sizes[{tenths((reach->way.target - reach->way.start).norm()), tenths(reach->way.target_radius)}]
         .push_back(reach);
   }
-  double sum = 0.0, count = 0.0;
+  std::map<Size, double> found;
   for (const auto& [size, of] : sizes) {
     if (const auto bits = throughput_of_size(of)) {
-      sum += *bits;
-      count += 1.0;
+      found[size] = *bits;
     }
   }
-  return count > 0.0 ? std::optional(sum / count) : std::nullopt;
+  return found;
+}
+
+/// The mean of each participant under each condition, over the combinations that all conditions of
+/// the participant have: means over different ones would compare these.
+std::vector<QuantityValue> throughput_values(const Reaches& reaches,
+                                             std::vector<std::string>& missing) {
+  std::map<std::string, std::vector<std::pair<std::vector<std::string>, std::map<Size, double>>>>
+      people;
+  for (const auto& [of, each] : reaches) {
+    people[of.first].emplace_back(of.second, throughputs(each));
+  }
+  std::vector<QuantityValue> values;
+  for (const auto& [participant, conditions] : people) {
+    std::map<Size, std::size_t> counts;
+    for (const auto& [levels, found] : conditions) {
+      for (const auto& [size, bits] : found) {
+        ++counts[size];
+      }
+    }
+    const auto all = static_cast<std::size_t>(std::ranges::count_if(
+        counts, [&](const auto& each) { return each.second == conditions.size(); }));
+    if (all < counts.size()) {
+      missing.push_back(fmt::format(
+          "throughput of {}: over {} of {} combinations of distance and size, as the others have "
+          "fewer than three reaches with an end under some condition",
+          participant, all, counts.size()));
+    }
+    for (const auto& [levels, found] : conditions) {
+      double sum = 0.0;
+      for (const auto& [size, bits] : found) {
+        sum += counts[size] == conditions.size() ? bits : 0.0;
+      }
+      if (all > 0) {
+        values.push_back({participant, levels, sum / static_cast<double>(all)});
+      }
+    }
+  }
+  return values;
+}
+
+/// The mean of each participant under each condition over the reaches that have a value.
+std::vector<QuantityValue> mean_values(const Measure& measure, const ReachingResult& reaching,
+                                       const Reaches& reaches, std::vector<std::string>& missing) {
+  std::vector<QuantityValue> values;
+  std::map<std::vector<std::string>, std::pair<std::size_t, std::size_t>> without;  // of all
+  for (const auto& [of, each] : reaches) {
+    auto& [none, all] = without[of.second];
+    all += each.size();
+    none += static_cast<std::size_t>(std::ranges::count_if(
+        each, [&](const StudyReach* reach) { return !measure.of(reaching, *reach); }));
+    if (const auto value = mean_of(measure, reaching, each)) {
+      values.push_back({of.first, of.second, *value});
+    }
+  }
+  for (const auto& [levels, counts] : without) {
+    if (counts.first > 0) {
+      missing.push_back(fmt::format("{}{}{}: {} of {} reaches have none", measure.title,
+                                    levels.empty() ? "" : ", ", fmt::join(levels, ", "),
+                                    counts.first, counts.second));
+    }
+  }
+  return values;
+}
+
+/// Without conditions the error, which is the usual quantity, has its curves alone.
+bool is_only_curves(const TrialsPlan& plan, const ReachingPlan& reaching) {
+  return plan.by.empty() && reaching.quantities == std::vector{ReachQuantity::kError};
 }
 
 }  // namespace
@@ -153,21 +224,19 @@ std::optional<double> throughput(const std::vector<const StudyReach*>& reaches) 
 std::vector<Quantity> reach_quantities(const TrialsData& data, const ReachingResult& reaching,
                                        const TrialsPlan& plan) {
   std::vector<Quantity> all;
-  if (plan.by.empty()) {
+  if (is_only_curves(plan, reaching.plan)) {
     return all;
   }
   const std::vector<bool> counts = taken(reaching);
   for (const ReachQuantity each : reaching.plan.quantities) {
     const Measure measure = measure_of(each);
-    std::vector<QuantityValue> values;
-    for (const auto& [of, reaches] : reaches_of(data, reaching, plan, counts, measure.kind)) {
-      const auto value = each == ReachQuantity::kThroughput ? throughput(reaches)
-                                                            : mean_of(measure, reaching, reaches);
-      if (value) {
-        values.push_back({of.first, of.second, *value});
-      }
-    }
+    const Reaches reaches = reaches_of(data, reaching, plan, counts, measure.kind);
+    std::vector<std::string> missing;
+    const std::vector<QuantityValue> values =
+        each == ReachQuantity::kThroughput ? throughput_values(reaches, missing)
+                                           : mean_values(measure, reaching, reaches, missing);
     all.push_back(quantity(measure.name, measure.title, measure.unit, values, plan, measure.range));
+    all.back().missing = std::move(missing);
   }
   return all;
 }

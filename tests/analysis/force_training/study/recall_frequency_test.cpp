@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -130,10 +131,44 @@ TEST(RecallFrequencyTest, BandsAreThoseThatWereTaughtAndConditionsDiffer) {
   EXPECT_LT(*second.coherence.p_adjusted, 0.01);
 }
 
+TEST(RecallFrequencyTest, RunsOfOtherLengthsHaveNoFrequenciesInCommon) {
+  const RecalledWaves waves({{"only", {.gain = 0.5}}}, 2, 4, 8);
+  std::vector<RecalledSpectra> spectra = waves.spectra();
+  RecallSpectrum twice = *spectra[0].recalls[0];
+  twice.period *= 2.0;
+  spectra[0].recalls[0] = &twice;
+  const auto bands = recall_over_time(spectra, {"only"});
+  ASSERT_FALSE(bands);
+  EXPECT_EQ(bands.because(),
+            "runs take 6.4 to 12.8 s, so that their cycles are different frequencies");
+  twice.period *= 0.52;  // as runs differ by the ticks that they take
+  EXPECT_TRUE(recall_over_time(spectra, {"only"}));
+}
+
 TEST(RecallFrequencyTest, PhasesWithoutACommonDirectionHaveNoMean) {
   const RecalledWaves waves({{"only", {.gain = 0.0, .noise = 1.0}}}, 8, 4, 8);
   const auto bands = recall_by_frequency(waves.spectra(), {"only"});
   EXPECT_FALSE(bands.front().conditions.front().phase);
+}
+
+TEST(RecallFrequencyTest, WhoRecallsNothingHasNoPhase) {
+  const RecalledWaves waves({{"only", {.gain = 0.8, .delay = 0.5}}}, 6, 4, 8);
+  std::vector<RecalledSpectra> spectra = waves.spectra();
+  const auto all = recall_by_frequency(spectra, {"only"});
+  std::vector<RecallSpectrum> nothing;
+  for (const RecallSpectrum* recall : spectra[0].recalls) {
+    nothing.push_back(*recall);
+    std::ranges::fill(nothing.back().applied, 0.0);
+  }
+  for (std::size_t i = 0; i < nothing.size(); ++i) {
+    spectra[0].recalls[i] = &nothing[i];
+  }
+  const RecallAtFrequency found = recall_by_frequency(spectra, {"only"})[0].conditions[0];
+  EXPECT_EQ(found.people, 5U);
+  ASSERT_TRUE(found.gain);
+  ASSERT_TRUE(found.phase);
+  EXPECT_NEAR(found.gain->mean, all[0].conditions[0].gain->mean, 0.05);
+  EXPECT_NEAR(found.phase->mean, all[0].conditions[0].phase->mean, 0.05);
 }
 
 TEST(RecallFrequencyTest, OneTrialOfAParticipantIsLeftOut) {

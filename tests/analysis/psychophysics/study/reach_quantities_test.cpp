@@ -116,6 +116,44 @@ TEST(ReachQuantitiesTest, ThroughputIsBitsOfTheWidthThatWasUsedOverTime) {
   EXPECT_NEAR(*means[1][1] / (bits / 2.0), 1.0, 0.03);
 }
 
+/// Nearly all reaches under one condition never slow down over the short way, which is fast.
+TEST(ReachQuantitiesTest, ConditionsAreComparedOverTheCombinationsThatBothHave) {
+  constexpr int kReaches = 400;
+  TrialsPlan plan = reach_plan({"block"});
+  plan.reaching.quantities = {ReachQuantity::kThroughput, ReachQuantity::kMovementTime};
+  auto made = simulated_reaches({}, plan.reaching);
+  made.data.sessions.resize(1);
+  made.data.trials.clear();
+  made.reaching.reaches.clear();
+  made.reaching.persons.assign(kReaches, 0);
+  made.reaching.block_of.assign(kReaches, 0);
+  RandomStream random(1, "ends");
+  for (int i = 0; i < kReaches; ++i) {
+    const bool is_far = i % 4 < 2, second = i % 2 == 1;
+    StudyTrial trial;
+    trial.variables.push_back({"block", 0, second ? 2.0 : 1.0});
+    StudyReach reach;
+    reach.trial = made.data.trials.size();
+    reach.way.target = {is_far ? 0.12 : 0.06, 0.0, 0.0};
+    if (is_far || !second) {
+      reach.metrics.endpoint_extent = i / 4 % 2 == 0 ? 0.004 : -0.004;
+      reach.metrics.movement_time = is_far ? 0.6 : 0.4;
+    }
+    made.data.trials.push_back(trial);
+    made.reaching.reaches.push_back(reach);
+  }
+  const auto quantities = reach_quantities(made.data, made.reaching, plan);
+  ASSERT_EQ(quantities.size(), 2u);
+  const auto& means = quantities[0].table.means;
+  ASSERT_EQ(means.size(), 1u);
+  ASSERT_EQ(means[0].size(), 2u);
+  EXPECT_NEAR(*means[0][0], *means[0][1], 1e-9) << "over the long way alone";
+  EXPECT_THAT(quantities[0].missing,
+              testing::ElementsAre(testing::HasSubstr("over 1 of 2 combinations")));
+  EXPECT_THAT(quantities[1].missing,
+              testing::ElementsAre(testing::HasSubstr("100 of 200 reaches have none")));
+}
+
 /// Everybody comes on a second day and reaches as on the first, but 10 mm farther off the way, and
 /// each person 1 mm farther than the one before.
 test::ReachesOfStudy two_days(const ReachingPlan& plan) {
@@ -186,11 +224,18 @@ TEST(ReachQuantitiesTest, BlocksOfTheSameNameStayApartOverSessions) {
   EXPECT_EQ(compared, 1u);
 }
 
-TEST(ReachQuantitiesTest, WithoutConditionsThereAreNone) {
+TEST(ReachQuantitiesTest, WithoutConditionsThereIsOneMean) {
   TrialsPlan plan = reach_plan({"group"});
   plan.by.clear();
-  const auto made = simulated_reaches({}, plan.reaching);
-  EXPECT_TRUE(reach_quantities(made.data, made.reaching, plan).empty());
+  plan.reaching.quantities = {ReachQuantity::kMovementTime};
+  auto made = simulated_reaches({}, plan.reaching);
+  const auto quantities = reach_quantities(made.data, made.reaching, plan);
+  ASSERT_EQ(quantities.size(), 1u);
+  EXPECT_FALSE(quantities[0].compared);
+  ASSERT_EQ(quantities[0].means.size(), 1u);
+  EXPECT_TRUE(quantities[0].means[0]);
+  made.reaching.plan.quantities = {ReachQuantity::kError};
+  EXPECT_TRUE(reach_quantities(made.data, made.reaching, plan).empty()) << "it has its curves";
 }
 
 TEST(ReachQuantitiesTest, EveryTestKeepsItsLevel) {
