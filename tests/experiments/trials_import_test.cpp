@@ -10,6 +10,7 @@
 #include <fstream>
 #include <map>
 #include <sstream>
+#include <utility>
 #include <vector>
 
 #include "tests/experiments/command.h"
@@ -167,6 +168,211 @@ TEST_F(TrialsImportTest, DetectionsAreComparedByTheirFactor) {
   for (const auto& [cell, d_prime] : found) {
     EXPECT_NEAR(d_prime, counted.d_prime(cell), 1e-9) << cell;
   }
+}
+
+/// The share of right answers under each level of a factor beside the stimulus.
+TEST_F(TrialsImportTest, IdentificationsAreComparedByTheirFactor) {
+  std::string table = "subject,stimulus,answer,correct,hand\n";
+  for (int i = 0; i < 160; ++i) {
+    const char* shown = i % 2 == 0 ? "soft" : "stiff";
+    const bool glove = i % 4 < 2;
+    const bool right = glove ? i % 8 < 4 : i % 20 != 3;
+    const char* said = right == (i % 2 == 0) ? "soft" : "stiff";
+    table += fmt::format("P{},{},{},{},{}\n", i / 40, shown, said, right ? 1 : 0,
+                         glove ? "glove" : "bare");
+  }
+  test::write_text(folder_ / "theirs.csv", table);
+  const CommandResult run = run_command(
+      fmt::format("haptrial import {} --kind identification --factor hand --factor stimulus --out "
+                  "{} && haptrial analyze {}",
+                  path("theirs.csv"), path("study"), path("study")));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Share of right answers, bare: 0.9000"));
+  EXPECT_THAT(run.output, HasSubstr("Share of right answers, glove: 0.5000"));
+}
+
+/// The name of an answer changes neither the guess rate nor the threshold.
+TEST_F(TrialsImportTest, CatchTrialsCountWhateverTheirAnswersAreCalled) {
+  constexpr const char* kDefinition = R"([experiment]
+protocol = "trials"
+name = "catches"
+[design]
+participants = 3
+[[stages]]
+name = "feel"
+until = {{ time = 0.2 }}
+[response]
+question = "Felt it?"
+choices = [{{ value = "{0}" }}, {{ value = "{1}" }}]
+correct = "$probe == 'no' ? 1 : 2"
+[procedure]
+kind = "constant"
+variable = "level"
+levels = [1.0, 2.0, 3.0, 4.0, 5.0]
+repetitions = 40
+counts = "$answer == 1"
+[[blocks]]
+name = "b"
+probe = {{ name = "catch", share = 0.2, level = 0.0 }}
+[analysis]
+resamples = 0
+)";
+  std::map<std::string, std::string> thresholds;
+  for (const auto& [felt, nothing] : {std::pair("felt", "nothing"), {"yes", "no"}}) {
+    std::string table = "participant,level,answer,correct,outcome,probe\n";
+    const auto add = [&](const char* level, int of_forty, bool caught) {
+      for (int i = 0; i < 40; ++i) {
+        const bool said = i < of_forty;
+        table +=
+            fmt::format("P1,{},{},{},{},{}\n", level, said ? felt : nothing, said != caught ? 1 : 0,
+                        caught ? "" : fmt::format("{:d}", said), caught ? "catch" : "");
+      }
+    };
+    add("1", 12, false);
+    add("2", 16, false);
+    add("3", 25, false);
+    add("4", 35, false);
+    add("5", 39, false);
+    add("", 10, true);
+    test::write_text(folder_ / "theirs.csv", table);
+    test::write_text(folder_ / "theirs.toml", fmt::format(kDefinition, felt, nothing));
+    const CommandResult run = run_command(fmt::format(
+        "haptrial import {} --definition {} --column outcome=outcome --column probe=probe --out {} "
+        "&& haptrial analyze {}",
+        path("theirs.csv"), path("theirs.toml"), path(felt), path(felt)));
+    ASSERT_EQ(run.status, 0) << run.errors;
+    for (const Row& row : rows_of(folder_ / (std::string(felt) + "/estimates.csv"))) {
+      if (row.at("name") == "guess_rate") {
+        EXPECT_NEAR(std::stod(row.at("estimate")), 0.25, 0.03) << felt;
+      } else if (row.at("name") == "threshold") {
+        thresholds[felt] = row.at("estimate");
+      }
+    }
+  }
+  EXPECT_EQ(thresholds.size(), 2u);
+  EXPECT_EQ(thresholds["felt"], thresholds["yes"]);
+}
+
+/// Thresholds that fall to half in everybody, on a logarithmic axis.
+TEST_F(TrialsImportTest, AChangeFromABaselineIsNoLevel) {
+  std::string table = "participant,session,level,answer,outcome\n";
+  const std::vector<std::pair<double, int>> answers{
+      {0.5, 2}, {1.0, 8}, {2.0, 20}, {4.0, 33}, {8.0, 39}};
+  for (const char* who : {"P1", "P2", "P3"}) {
+    for (const auto& [level, felt] : answers) {
+      for (int i = 0; i < 40; ++i) {
+        const char* said = i < felt ? "yes,1" : "no,0";
+        table += fmt::format("{0},1,{1},{2}\n{0},2,{3},{2}\n", who, level, said, 0.5 * level);
+      }
+    }
+  }
+  test::write_text(folder_ / "theirs.csv", table);
+  test::write_text(folder_ / "theirs.toml", R"([experiment]
+protocol = "trials"
+name = "base"
+[design]
+participants = 3
+sessions = 2
+[design.session.1]
+name = "pre"
+blocks = ["b"]
+[design.session.2]
+name = "post"
+blocks = ["b"]
+[[stages]]
+name = "feel"
+until = { time = 0.3 }
+[response]
+question = "Felt?"
+choices = [{ value = "yes" }, { value = "no" }]
+[procedure]
+kind = "constant"
+variable = "level"
+unit = "N"
+levels = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0]
+repetitions = 40
+counts = "$answer == 1"
+[[blocks]]
+name = "b"
+[analysis]
+by = ["session"]
+baseline = "pre"
+scale = "log10"
+guess = 0.0
+resamples = 0
+)");
+  const CommandResult run = run_command(fmt::format(
+      "haptrial import {} --definition {} --column outcome=outcome --out {} && haptrial "
+      "analyze {}",
+      path("theirs.csv"), path("theirs.toml"), path("study"), path("study")));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Change of threshold, post: -0.3010"));
+  EXPECT_THAT(run.output, testing::ContainsRegex("Change of threshold, post: .* log10\\(N\\)"));
+}
+
+TEST_F(TrialsImportTest, ValuesOfBlocksThatMakeConditionsNeedAColumn) {
+  test::write_text(folder_ / "theirs.toml", R"([experiment]
+protocol = "trials"
+name = "blocks"
+[design]
+participants = 1
+[variables]
+level = 0.0
+[[blocks]]
+name = "eyes"
+trials = 100
+modality = "eye"
+[[blocks]]
+name = "hands"
+trials = 100
+modality = "hand"
+[[stages]]
+name = "feel"
+until = { time = 0.3 }
+[response]
+question = "Larger?"
+choices = [{ value = "larger" }, { value = "smaller" }]
+[analysis]
+kind = "psychometric"
+level = "level"
+yes = "larger"
+guess = 0.0
+by = ["modality"]
+resamples = 0
+)");
+  std::string table = "participant,level,answer,modality\n";
+  for (int i = 0; i < 200; ++i) {
+    const int level = i % 5 - 2;
+    const bool eye = i < 100;
+    const bool larger = i % 100 / 5 < 10 + 4 * level + (eye ? 3 : -3);
+    table +=
+        fmt::format("P1,{},{},{}\n", level, larger ? "larger" : "smaller", eye ? "eye" : "hand");
+  }
+  test::write_text(folder_ / "theirs.csv", table);
+  const std::string import =
+      fmt::format("haptrial import --definition {} --out {} ", path("theirs.toml"), path("study"));
+  const CommandResult run =
+      run_command(import + path("theirs.csv") + " && haptrial analyze " + path("study"));
+  ASSERT_EQ(run.status, 0) << run.errors;
+  EXPECT_THAT(run.output, HasSubstr("Threshold, eye: -"));
+  EXPECT_THAT(run.output, HasSubstr("Threshold, hand: 0."));
+  const std::string other = table.replace(table.find("modality"), 8, "sense");
+  test::write_text(folder_ / "other.csv", other);
+  fs::remove_all(folder_ / "study");
+  const CommandResult refused = run_command(import + path("other.csv"));
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("add --factor modality=COLUMN"));
+}
+
+TEST_F(TrialsImportTest, AUnitOfTimeIsThatOfItsOwnColumn) {
+  test::write_text(folder_ / "theirs.csv",
+                   "participant,rt_s,latency\nP1,0.5,50\nP1,0.6,25\nP1,0.7,24\n");
+  const std::string import = "haptrial import " + path("theirs.csv") +
+                             " --column time=latency --kind times --out " + path("study");
+  const CommandResult refused = run_command(import);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("latency may be seconds or milliseconds"));
+  EXPECT_EQ(run_command(import + " --time-unit ms").status, 0);
 }
 
 /// A shipped experiment, factors that blocks or trials vary, and columns that it lacks.

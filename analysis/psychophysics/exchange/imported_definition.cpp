@@ -141,12 +141,58 @@ std::string rating_response(const ImportedStudy& study) {
                      kImportedRating, low, std::max(high, low + 1));
 }
 
-std::string by_line(const ImportedStudy& study) {
-  std::vector<std::string> names;
-  for (const auto& factor : study.columns.factors) {
-    names.push_back(toml_text(factor.variable));
+/// The factor that says which stimulus was presented: the first whose levels are answers, else the
+/// first; the number of factors if there is none.
+std::size_t stimulus_of(const ImportedStudy& study) {
+  const std::vector<std::string> answers = answers_of(study);
+  const std::size_t factors = study.columns.factors.size();
+  for (std::size_t factor = 0; factor < factors; ++factor) {
+    if (std::ranges::all_of(study.trials, [&](const ImportedTrial& trial) {
+          const ImportedValue& value = trial.factors[factor];
+          const std::string word =
+              value.word.empty() ? fmt::format("{}", value.number) : value.word;
+          return std::ranges::find(answers, word) != answers.end();
+        })) {
+      return factor;
+    }
   }
-  return fmt::format("by = [{}]\n", fmt::join(names, ", "));
+  return 0;
+}
+
+/// The keys of factors for kinds that compare none by themselves.
+std::string factor_lines(const ImportedStudy& study, const std::string& kind) {
+  const bool identifies = kind == "identification";
+  const bool by_itself =
+      !identifies && kind != "detection" && (kind != "times" || study.columns.level.empty());
+  if (study.columns.factors.empty() || by_itself) {
+    return "";
+  }
+  const std::size_t stimulus = identifies ? stimulus_of(study) : study.columns.factors.size();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < study.columns.factors.size(); ++i) {
+    if (i != stimulus) {
+      names.push_back(toml_text(study.columns.factors[i].variable));
+    }
+  }
+  return (identifies
+              ? fmt::format("stimulus = {}\n", toml_text(study.columns.factors[stimulus].variable))
+              : std::string()) +
+         (names.empty() ? std::string() : fmt::format("by = [{}]\n", fmt::join(names, ", ")));
+}
+
+/// @throws InputError if answers do not say whether there was a signal
+void check_signal_word(const ImportedStudy& study, const ImportedAnalysis& analysis) {
+  const std::vector<std::string> answers = answers_of(study);
+  if (study.columns.answer.empty()) {
+    throw InputError(
+        "no column has the answers, which --kind detection counts; add --column answer=COLUMN");
+  }
+  if (analysis.yes.empty() && std::ranges::find(answers, "yes") == answers.end()) {
+    throw InputError(fmt::format(
+        "--yes is missing, and no answer is 'yes'; add the one that says that there was a signal; "
+        "allowed: {}",
+        fmt::join(answers, ", ")));
+  }
 }
 
 /// Whether the distance of two stimuli depends on how many of them a trial presented.
@@ -164,9 +210,7 @@ std::string analysis_table(const ImportedStudy& study, const ImportedAnalysis& a
   if (!analysis.yes.empty()) {
     text += fmt::format("yes = {}\n", toml_text(analysis.yes));
   }
-  if (kind == "detection" && !study.columns.factors.empty()) {
-    text += by_line(study);  // other kinds compare the factors without it
-  }
+  text += factor_lines(study, kind);
   if (identifies_two(study, kind)) {
     text += "task = \"one interval\"  # \"forced choice\" if a trial presented both stimuli\n";
   }
@@ -265,6 +309,9 @@ std::string imported_definition(const ImportedStudy& study, const ImportedAnalys
       !analysis.yes.empty() && std::ranges::find(answers, analysis.yes) == answers.end()) {
     throw InputError(fmt::format("--yes is '{}', which is no answer; allowed: {}", analysis.yes,
                                  fmt::join(answers, ", ")));
+  }
+  if (kind == "detection") {
+    check_signal_word(study, analysis);
   }
   std::string text = fmt::format(
       "# Trials that another program presented and `haptrial import` read from {}.\n"

@@ -202,8 +202,9 @@ void set_column(std::string_view setting, TrialColumns& columns) {
                                  setting, hint.empty() ? ";" : hint, fmt::join(known, ", ")));
   }
   columns.*found->second = column;
-  if (role == "time" && unit_in(column) > 0.0) {
-    columns.time_unit = unit_in(column);
+  const double unit = role == "time" ? unit_in(column) : 0.0;
+  if (unit > 0.0 || (role == "time" && columns.origin == TableOrigin::kPlain)) {
+    columns.time_unit = unit;  // not that of the column before
   }
 }
 

@@ -101,14 +101,39 @@ std::vector<std::string> factors_of(const TrialsData& data, const StudyTrial& tr
 
 namespace {
 
-/// 1 or 0 for "yes" in a catch trial; -1: it is none.
-int answer_to_catch(const StudyTrial& trial, const TrialsPlan& plan) {
+/// The answer that counts 1 at every level; if the plan does not state it, the only one that always
+/// did, whatever it is called. Empty: none, as where a formula counts places.
+std::string counted_answer(const TrialsData& data, const TrialsPlan& plan) {
+  if (!plan.yes.empty()) {
+    return plan.yes;
+  }
+  std::map<std::string, std::pair<bool, bool>> counted;  // as 0, as 1
+  for (const StudyTrial& trial : data.trials) {
+    const GivenAnswer* answer = answer_to(trial, plan.question);
+    const int outcome = outcome_of(trial, plan);
+    if (trial.counts() && answer != nullptr && outcome >= 0 &&
+        std::isfinite(level_of(trial, plan))) {
+      bool& was = outcome == 1 ? counted[answer->text].second : counted[answer->text].first;
+      was = true;
+    }
+  }
+  std::vector<std::string> always;
+  for (const auto& [text, was] : counted) {
+    if (was.second && !was.first) {
+      always.push_back(text);
+    }
+  }
+  return always.size() == 1 ? always.front() : std::string();
+}
+
+/// 1 or 0 in a catch trial; -1: it is none. @param yes  counted_answer()
+int answer_to_catch(const StudyTrial& trial, const TrialsPlan& plan, const std::string& yes) {
   const GivenAnswer* answer = answer_to(trial, plan.question);
-  if (!plan.guess_free || !trial.counts() || trial.probe.empty() || answer == nullptr ||
+  if (yes.empty() || !trial.counts() || trial.probe.empty() || answer == nullptr ||
       std::isfinite(level_of(trial, plan))) {
     return -1;
   }
-  const int outcome = answer->text == yes_of(plan) ? 1 : 0;
+  const int outcome = answer->text == yes ? 1 : 0;
   return signal_in(trial, plan, outcome) == 0 ? outcome : -1;
 }
 
@@ -129,6 +154,7 @@ AnsweredSeries& series_with(const std::vector<std::string>& levels, const std::s
 
 std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& plan) {
   const std::vector<std::string> words = two_answers(data, plan);
+  const std::string yes = plan.guess_free ? counted_answer(data, plan) : std::string();
   std::map<std::string, std::vector<AnsweredSeries>> people;
   for (std::size_t i = 0; i < data.trials.size(); ++i) {
     const StudyTrial& trial = data.trials[i];
@@ -137,9 +163,9 @@ std::vector<AnsweredSeries> series_of(const TrialsData& data, const TrialsPlan& 
     }
     const std::string& participant = data.session_of(trial).participant;
     const std::vector<std::string> levels = factors_of(data, trial, plan);
-    if (const int yes = answer_to_catch(trial, plan); yes >= 0) {
+    if (const int said = answer_to_catch(trial, plan, yes); said >= 0) {
       TrialBlock& catches = series_with(levels, participant, people[participant]).catches;
-      catches.correct += yes;
+      catches.correct += said;
       ++catches.total;
       continue;
     }

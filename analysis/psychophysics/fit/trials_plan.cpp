@@ -45,7 +45,12 @@ bool has_name(const std::vector<std::string>& names, const std::string& name) {
 std::vector<std::string> usual_by(AnalysisKind kind, const PlanDefaults& defaults) {
   const bool none = kind == AnalysisKind::kDetection || kind == AnalysisKind::kIdentification ||
                     kind == AnalysisKind::kReaching || kind == AnalysisKind::kPaired;
-  return none ? std::vector<std::string>{} : defaults.factors;
+  std::vector<std::string> by = none ? std::vector<std::string>{} : defaults.factors;
+  if (kind == AnalysisKind::kAdjustment) {
+    std::erase_if(
+        by, [&](const std::string& name) { return has_name(defaults.within_settings, name); });
+  }
+  return by;
 }
 
 std::vector<std::string> names_of(const PlanDefaults& defaults) {
@@ -60,6 +65,10 @@ void check_by(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan
     if (!has_name(known, name)) {
       table.reject("by", fmt::format("an array with \"{}\"", name),
                    fmt::format("{}", fmt::join(known, ", ")));
+    } else if (plan.kind == AnalysisKind::kAdjustment && has_name(defaults.within_settings, name)) {
+      table.reject("by", fmt::format("has \"{0}\", which varies while a level is adjusted; add by "
+                                     "= [\"{0}\"] to the procedure",
+                                     name));
     }
   }
 }
@@ -73,27 +82,65 @@ void check_baseline(Table& table, const PlanDefaults& defaults, const TrialsPlan
   }
 }
 
+/// The question whose answers count; null: it is not known.
+const PlanQuestion* question_of(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const auto named = plan.question.empty() ? defaults.questions.begin()
+                                           : std::ranges::find(defaults.questions, plan.question,
+                                                               &PlanQuestion::name);
+  return named == defaults.questions.end() ? nullptr : &*named;
+}
+
+std::size_t alternatives(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const PlanQuestion* question = question_of(defaults, plan);
+  return question == nullptr ? 0 : question->alternatives();
+}
+
+/// The first other question of which no answer is right.
+std::string usual_rating(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const PlanQuestion* question = question_of(defaults, plan);
+  const auto other = std::ranges::find_if(defaults.questions, [&](const PlanQuestion& each) {
+    return &each != question && !each.judged;
+  });
+  return other == defaults.questions.end() ? std::string() : other->name;
+}
+
+/// 1 / alternatives where it counts whether an answer is right; nothing where an answer "yes", or a
+/// formula from which a procedure learns, is what counts.
+std::optional<double> usual_guess(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const PlanQuestion* question = question_of(defaults, plan);
+  const bool formula = plan.question.empty() && defaults.counts_formula;
+  if (question == nullptr || !question->judged || question->alternatives() < 2 || formula ||
+      !plan.yes.empty()) {
+    return std::nullopt;
+  }
+  return 1.0 / static_cast<double>(question->alternatives());
+}
+
+void set_guess(const std::optional<double>& guess, TrialsPlan& plan) {
+  plan.guess_free = !guess.has_value();
+  plan.function.guess = guess.value_or(0.0);
+}
+
 /// The first factor whose levels are choices of the response, else the first factor.
-std::string usual_stimulus(const PlanDefaults& defaults) {
+std::string usual_stimulus(const PlanDefaults& defaults, const std::vector<std::string>& choices) {
   const auto named = std::ranges::find_if(defaults.factors, [&](const std::string& factor) {
     const auto levels = defaults.levels.find(factor);
     return levels != defaults.levels.end() &&
-           std::ranges::all_of(levels->second, [&](const std::string& level) {
-             return has_name(defaults.choices, level);
-           });
+           std::ranges::all_of(levels->second,
+                               [&](const std::string& level) { return has_name(choices, level); });
   });
   return named != defaults.factors.end() ? *named
          : defaults.factors.empty()      ? ""
                                          : defaults.factors.front();
 }
 
-DiscriminationTask usual_task(const PlanDefaults& defaults) {
-  const bool alone = defaults.choices.size() == 2 && defaults.cues.intervals.size() < 2;
+DiscriminationTask usual_task(const PlanDefaults& defaults, const TrialsPlan& plan) {
+  const bool alone = plan.alternatives() == 2 && defaults.cues.intervals.size() < 2;
   return alone ? DiscriminationTask::kOneInterval : DiscriminationTask::kForcedChoice;
 }
 
 void check_task(Table& table, const TrialsPlan& plan) {
-  if (plan.discrimination == DiscriminationTask::kOneInterval && plan.choices.size() != 2) {
+  if (plan.discrimination == DiscriminationTask::kOneInterval && plan.alternatives() != 2) {
     table.reject("task", "\"one interval\"",
                  "another one if the response does not have two choices");
   }
@@ -118,14 +165,11 @@ void check_times(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
   }
   if (plan.level_assumed || !table.has("level")) {
     plan.level.clear();
-  } else if (has_name(plan.by, plan.level)) {
-    table.reject("level", fmt::format("\"{}\", which `by` names, too", plan.level),
-                 "a variable that varies within each condition");
   }
 }
 
 void check_diffusion(Table& table, const PlanDefaults& defaults, const TrialsPlan& plan) {
-  if (plan.diffusion && plan.question.empty() && plan.yes.empty() && defaults.choices.size() != 2) {
+  if (plan.diffusion && plan.yes.empty() && alternatives(defaults, plan) != 2) {
     table.reject("diffusion", "true", "false where the response does not have two choices");
   }
 }
@@ -348,8 +392,7 @@ Schema<TrialsPlan> make_function_schema(const PlanDefaults& defaults) {
         plan.function.axis = axis_of(defaults, plan);
         check_function(table, defaults, plan);
         axis_schema().read(table, plan.function.axis);
-        plan.guess_free = !defaults.guess.has_value();
-        plan.function.guess = defaults.guess.value_or(0.0);
+        set_guess(usual_guess(defaults, plan), plan);
       })
       .custom("guess",
               "Guess rate of the functions, \"free\" (at most 0.2; with catch trials 0.5), or "
@@ -407,6 +450,51 @@ void check_measured(Table& table, const PlanDefaults& defaults, const TrialsPlan
   }
 }
 
+/// @throws as Table::reject(), if a key names what the definition does not have
+void check_name(Table& table, const char* key, const std::string& name, const char* what,
+                const std::vector<std::string>& known) {
+  if (!name.empty() && !known.empty() && !has_name(known, name)) {
+    table.reject(key, fmt::format("\"{}\"", name),
+                 fmt::format("{}: {}", what, fmt::join(known, ", ")));
+  }
+}
+
+std::vector<std::string> question_names(const PlanDefaults& defaults) {
+  std::vector<std::string> names;
+  std::ranges::transform(defaults.questions, std::back_inserter(names), &PlanQuestion::name);
+  return names;
+}
+
+/// An answer that no choice is called would never be given.
+void check_answers(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
+  check_name(table, "question", plan.question, "a question", question_names(defaults));
+  check_name(table, "level", plan.level, "a variable of the trials", defaults.produced.variables);
+  const PlanQuestion* question = question_of(defaults, plan);
+  if (question == nullptr || question->choices.empty()) {
+    return;
+  }
+  check_name(table, "yes", plan.yes, "an answer", question->choices);
+  if (plan.kind == AnalysisKind::kDetection && plan.yes.empty() &&
+      !has_name(question->choices, "yes")) {
+    table.reject("yes", fmt::format("is missing, and no answer is \"yes\"; add the one that says "
+                                    "that there was a signal: {}",
+                                    fmt::join(question->choices, ", ")));
+  }
+}
+
+/// One level has no function and no slope: the factor that is the level makes no conditions.
+void check_level_by(Table& table, TrialsPlan& plan) {
+  if (plan.level.empty() || !has_name(plan.by, plan.level)) {
+    return;
+  }
+  if (!table.has("by")) {
+    std::erase(plan.by, plan.level);
+  } else if (plan.kind != AnalysisKind::kDetection || table.has("function")) {
+    table.reject("level", fmt::format("\"{}\", which `by` names, too", plan.level),
+                 "a variable that varies within each condition");
+  }
+}
+
 /// The keys that say which answers are compared.
 void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
   using P = TrialsPlan;
@@ -419,18 +507,30 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       .text("level", &P::level, "Variable that is the level of a trial")
       .otherwise("the one that the procedure set; of several, the first procedure's")
       .only_if(answers)
+      .check([&](Table& table, P& plan) {
+        if (answers(plan) && plan.kind != AnalysisKind::kNone) {
+          check_answers(table, defaults, plan);
+          check_level_by(table, plan);
+        }
+      })
       .derive([&](P& plan) {
         settle_level(defaults, plan);
-        plan.rating = may_rate(plan) ? defaults.rating : "";
+        plan.rating = may_rate(plan) ? usual_rating(defaults, plan) : "";
         if (identifies(plan)) {
-          plan.choices = defaults.choices;
-          plan.stimulus = usual_stimulus(defaults);
-          plan.discrimination = usual_task(defaults);
+          if (const PlanQuestion* question = question_of(defaults, plan)) {
+            plan.choices = question->choices;
+            plan.last_is_silent = question->last_is_silent;
+          }
+          plan.stimulus = usual_stimulus(defaults, plan.choices);
+          plan.discrimination = usual_task(defaults, plan);
         }
       })
       .text("rating", &P::rating, "Question of how sure the participant was")
       .otherwise("the second question")
       .only_if(may_rate)
+      .check([&](Table& table, P& plan) {
+        check_name(table, "rating", plan.rating, "a question", question_names(defaults));
+      })
       .text("stimulus", &P::stimulus, "Factor that says which stimulus was presented")
       .otherwise("the first factor whose levels are choices, else the first factor")
       .only_if(identifies)
@@ -463,7 +563,7 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       .check([&](Table& table, P& plan) {
         if (plan.metacognition && plan.rating.empty()) {
           table.reject("metacognition", "true", "false where no question asks for confidence");
-        } else if (plan.metacognition && identifies(plan) && plan.choices.size() != 2) {
+        } else if (plan.metacognition && identifies(plan) && plan.alternatives() != 2) {
           table.reject("metacognition", "true",
                        "false where the response does not have two choices");
         }
@@ -520,7 +620,6 @@ Schema<TrialsPlan> make_plan_schema(const PlanDefaults& defaults) {
         if (is_timed(plan) && table.has("level")) {
           plan.by.clear();  // factors may make the level, or vary for other reasons
         }
-        std::erase(plan.by, plan.level);  // one level has no slope
       })
       .custom("by",
               "Factors whose levels are told apart: each combination has a function, d' or "
@@ -596,12 +695,9 @@ TrialsPlan read_trials_plan(Table& root, const PlanDefaults& defaults) {
   TrialsPlan plan;
   plan.kind = defaults.kind;
   plan.sessions = defaults.sessions;
-  const bool detects = plan.kind == AnalysisKind::kDetection;
-  plan.by = detects ? std::vector<std::string>{} : defaults.factors;
-  plan.rating = detects ? defaults.rating : "";
+  plan.by = usual_by(plan.kind, defaults);
   plan.functions = plan.kind == AnalysisKind::kPsychometric;
-  plan.guess_free = !defaults.guess.has_value();
-  plan.function.guess = defaults.guess.value_or(0.0);
+  set_guess(usual_guess(defaults, plan), plan);
   settle_level(defaults, plan);
   plan.function.axis = axis_of(defaults, plan);
   if (!root.has("analysis")) {

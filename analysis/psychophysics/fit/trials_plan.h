@@ -50,20 +50,31 @@ struct ProcedureLevels {
   std::optional<bool> falls;  // whether their answers 1 get rarer as the level rises
 };
 
+/// A question of the definition, as an analysis of its answers needs it.
+struct PlanQuestion {
+  std::string name;
+  std::vector<std::string> choices;  // in their order, a silent one that is no alternative behind
+  bool last_is_silent{false};        // it is given by silence alone, and two others can be chosen
+  bool judged{false};                // the definition says which answer is right
+
+  /// Answers that somebody who guesses may give; 0: numbers.
+  std::size_t alternatives() const { return choices.size() - (last_is_silent ? 1 : 0); }
+};
+
 /// Values of the rest of a definition that stand in for keys that [analysis] does not have.
 struct PlanDefaults {
   AnalysisKind kind{AnalysisKind::kNone};
   std::vector<std::string> factors;  // that [factors] varies, as written, and "group" of several
-  std::string rating;                // question of how sure somebody is; empty: none
-  std::vector<std::string> choices;  // of the first question; none: a number
-  std::vector<std::string> names;    // that `by` may name besides
-  std::vector<ProcedureLevels> procedures;  // one for each variable
-  std::optional<double> guess;              // 1 / choices where an answer is right; else free
-  ReachingNames reaching;                   // that the analysis of movements may name
-  PursuitNames pursuit;                     // that the analysis of pursuits may name
-  ProducedNames produced;                   // that the analysis of what is produced may name
-  CueNames cues;                            // that the comparison of cues may name
-  std::vector<std::string> pages;           // whose scores may be the covariate
+  std::vector<PlanQuestion> questions;
+  std::vector<std::string> names;            // that `by` may name besides
+  std::vector<ProcedureLevels> procedures;   // one for each variable
+  std::vector<std::string> within_settings;  // factors that vary while a level is adjusted
+  bool counts_formula{false};  // a procedure learns from a formula, not whether answers are right
+  ReachingNames reaching;      // that the analysis of movements may name
+  PursuitNames pursuit;        // that the analysis of pursuits may name
+  ProducedNames produced;      // that the analysis of what is produced may name
+  CueNames cues;               // that the comparison of cues may name
+  std::vector<std::string> pages;     // whose scores may be the covariate
   StatedLevels levels;                // of names of `by`, where the definition states all of them
   std::vector<std::string> sessions;  // their names, in their order
 };
@@ -91,7 +102,8 @@ struct TrialsPlan {
   std::string measured;       // measure of the stimulus, of magnitudes; empty: it is the level
   std::string rating;         // question with a number: how sure; empty: none
   std::string stimulus;       // factor that says what was presented, of an identification
-  std::vector<std::string> choices;  // of the question, likewise
+  std::vector<std::string> choices;  // of the question, as PlanQuestion has them, likewise
+  bool last_is_silent{false};        // likewise
   DiscriminationTask discrimination{DiscriminationTask::kForcedChoice};  // likewise
   bool task_assumed{false};   // the definition does not state the task
   bool metacognition{false};  // whether ratings give meta-d' and the M-ratio
@@ -120,6 +132,8 @@ struct TrialsPlan {
   ProducedPlan produced;        // where `kind` is kProduced
   PairedPlan paired;            // where `kind` is kPaired; `by` then ends with kItem
 
+  /// Choices of an identification that somebody who guesses may give.
+  int alternatives() const { return static_cast<int>(choices.size()) - (last_is_silent ? 1 : 0); }
   bool uses_level() const {
     return functions || kind == AnalysisKind::kMagnitude || kind == AnalysisKind::kAdjustment ||
            kind == AnalysisKind::kDetection;

@@ -188,7 +188,7 @@ void add_identification(Document& document, const TrialsResult& result,
   add_pictures(document, drawings, "by-condition-", kMostPictures);
   add_confusions(document, result);
   add_table(document, identification_findings(result), true);
-  const int alternatives = static_cast<int>(std::max<std::size_t>(result.plan.choices.size(), 2));
+  const int alternatives = std::max(result.plan.alternatives(), 2);
   document.paragraph(fmt::format(
       "d' is that of an observer without bias {}; the shares above show where this does not hold. "
       "Chance is {:.3f}.",

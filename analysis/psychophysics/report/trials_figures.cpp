@@ -45,7 +45,7 @@ std::map<std::string, std::vector<double>> times_of(const TrialsResult& result) 
 
 /// Means of a quantity, on the axis brought back to levels.
 double shown(const TrialsResult& result, const Quantity& q, double value) {
-  return q.name == "threshold" ? result.plan.function.axis.level(value) : value;
+  return q.on_axis ? result.plan.function.axis.level(value) : value;
 }
 
 Figure quantity_figure(const TrialsResult& result, const Quantity& q) {

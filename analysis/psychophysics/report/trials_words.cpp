@@ -18,9 +18,6 @@ const char* const kSimulatedTrials =
 
 namespace {
 
-/// Values of the threshold are on the axis, and means of them are levels.
-bool on_axis(const Quantity& q) { return q.name == "threshold"; }
-
 /// "6 participants", and why several have no interval.
 std::string people_word(const Quantity& q, std::size_t cell) {
   const std::size_t people = q.table.participants(cell);
@@ -262,7 +259,7 @@ const char* method_of(const FunctionFit& fit) { return fit.adaptive ? "posterior
 std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t cell) {
   const auto& mean = q.means[cell];
   const psychometric::Axis& axis = result.plan.function.axis;
-  const auto level = [&](double value) { return on_axis(q) ? axis.level(value) : value; };
+  const auto level = [&](double value) { return q.on_axis ? axis.level(value) : value; };
   if (!mean) {
     const auto value = mean_of(q, cell);
     if (!value) {
@@ -276,12 +273,12 @@ std::string mean_word(const TrialsResult& result, const Quantity& q, std::size_t
 }
 
 std::string tested_title(const TrialsResult& result, const Quantity& q) {
-  const bool same = !on_axis(q) || q.unit == result.plan.function.axis.unit;
+  const bool same = !q.on_axis || q.unit == result.plan.function.axis.unit;
   return q.title + (same ? "" : ", in " + q.unit);
 }
 
 std::string unit_word(const TrialsResult& result, const Quantity& q) {
-  const std::string& unit = on_axis(q) ? result.plan.function.axis.unit : q.unit;
+  const std::string& unit = q.on_axis ? result.plan.function.axis.unit : q.unit;
   return unit.empty() ? std::string() : " " + unit;
 }
 

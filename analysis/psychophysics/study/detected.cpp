@@ -130,9 +130,10 @@ void count_answer(Tally& tally, const StudyTrial& trial, const GivenAnswer& answ
   if (rating != nullptr && std::isfinite(rating->value)) {
     auto& [wrong, right] = tally.ratings[rating->value];
     ++(answer.correct == 1 ? right : wrong);
-    const int signal = stimulus == plan.choices.back() ? 1 : 0;
+    const std::string& last = plan.choices.at(static_cast<std::size_t>(plan.alternatives()) - 1);
+    const int signal = stimulus == last ? 1 : 0;
     if (plan.metacognition && (signal == 1 || stimulus == plan.choices.front())) {
-      tally.by_answer.add(signal, answer.text == plan.choices.back() ? 1 : 0, rating->value);
+      tally.by_answer.add(signal, answer.text == last ? 1 : 0, rating->value);
     }
   }
 }
@@ -167,15 +168,14 @@ double d_prime_of(double share, const TrialsPlan& plan) {
                           plan.discrimination == DiscriminationTask::kOneInterval;
     return signed_d ? -kEndless : 0.0;
   }
-  const Defined<double> d =
-      task_d_prime(plan.discrimination, share, static_cast<int>(plan.choices.size()));
+  const Defined<double> d = task_d_prime(plan.discrimination, share, plan.alternatives());
   return d ? *d : kNotKnown;
 }
 
 void add_d_prime(IdentifiedCondition& one, const TrialsPlan& plan) {
   const double half = 0.5 / one.trials;
   one.d_prime = task_d_prime(plan.discrimination, std::clamp(one.share, half, 1.0 - half),
-                             static_cast<int>(plan.choices.size()));
+                             plan.alternatives());
   one.d_low = d_prime_of(one.low, plan);
   one.d_high = d_prime_of(one.high, plan);
 }

@@ -22,9 +22,10 @@ struct QuantityValue {
 /// A quantity over participants: means of the conditions, and tests between them. A participant is
 /// one value under a condition, however many trials it comes from.
 struct Quantity {
-  std::string name;   // as in results.json: "threshold"
-  std::string title;  // "threshold"
-  std::string unit;   // of the values; empty: a pure number
+  std::string name;     // as in results.json: "threshold"
+  std::string title;    // "threshold"
+  std::string unit;     // of the values; empty: a pure number
+  bool on_axis{false};  // values are on the axis of levels, and their means are shown as levels
   DesignTable table;
   std::vector<Defined<MeanInterval>> means;  // (cells) over participants; none if a value is open,
                                              // or values do not vary

@@ -140,6 +140,7 @@ void add_functions(TrialsResult& result, const ProcedureOf& procedure_of, int th
   result.quantities.push_back(
       quantity("threshold", "threshold", unit,
                values_of(result.fits, [](const FunctionReadings& r) { return r.x.value; }), plan));
+  result.quantities.back().on_axis = plan.baseline.empty();  // a change is no level
   result.quantities.push_back(quantity(
       "log_width", "logarithm of the width", "",
       values_of(result.fits, [](const FunctionReadings& r) { return std::log(r.width.value); }),
@@ -389,13 +390,34 @@ void add_surface_quantities(TrialsResult& result) {
 }
 
 /// A participant's setting under a condition: the mean of their tracks' own estimates.
+/// The condition of all presentations of a track; nothing if they have several.
+std::optional<std::vector<std::string>> condition_of(const TrackEstimate& track,
+                                                     const TrialsResult& result) {
+  std::optional<std::vector<std::string>> condition;
+  for (const TrackStep& step : track.steps) {
+    auto levels = factors_of(result.data, result.data.trials[step.trial], result.plan);
+    if (condition && *condition != levels) {
+      return std::nullopt;
+    }
+    condition = std::move(levels);
+  }
+  return condition;
+}
+
 void add_settings(TrialsResult& result) {
   std::map<std::pair<std::string, std::vector<std::string>>, std::vector<double>> settings;
+  std::vector<std::string> missing;
   for (const TrackEstimate& track : result.tracks) {
-    if (!track.estimates.empty() && !track.steps.empty()) {
-      const StudyTrial& first = result.data.trials[track.steps.front().trial];
-      settings[{track.participant, factors_of(result.data, first, result.plan)}].push_back(
-          track.estimates.front().value);
+    const auto condition = condition_of(track, result);
+    std::string why = track.steps.empty()       ? "nothing was presented"
+                      : track.estimates.empty() ? "no adjustment ended with a setting"
+                      : !condition              ? "it is of several conditions"
+                                                : track.estimates.front().remark;
+    if (!why.empty()) {
+      missing.push_back(fmt::format("{}, {}: {}", track.participant, track.track, why));
+    }
+    if (condition && !track.estimates.empty()) {
+      settings[{track.participant, *condition}].push_back(track.estimates.front().value);
     }
   }
   std::vector<QuantityValue> values;
@@ -406,6 +428,7 @@ void add_settings(TrialsResult& result) {
   }
   result.quantities.push_back(
       quantity("setting", "setting", result.plan.function.axis.unit, values, result.plan));
+  result.quantities.back().missing = std::move(missing);
 }
 
 void add_tests(const Quantity& q, std::vector<NamedTest>& tests) {

@@ -1,12 +1,15 @@
 #include "analysis/statistics/base/descriptive.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "analysis/statistics/base/distributions.h"
 
 namespace haptrial::analysis {
 namespace {
+
+constexpr double kRounding = 1e-14;  // of a value that was computed, relative
 
 // A sum that keeps what rounding drops (Neumaier 1974).
 class Sum {
@@ -69,7 +72,8 @@ Defined<MeanInterval> mean_interval(std::span<const double> values, double level
     return Undefined{"an interval needs at least two values"};
   }
   const double deviation = std::sqrt(m->variance());
-  if (!(deviation > 0.0)) {
+  const auto [least, most] = std::ranges::minmax(values);
+  if (!(deviation > kRounding * std::max(std::abs(least), std::abs(most)))) {
     return Undefined{"the values do not vary"};
   }
   const auto n = static_cast<double>(m->count);

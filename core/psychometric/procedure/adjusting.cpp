@@ -82,6 +82,9 @@ std::vector<Estimate> Adjusting::estimates() const {
   Estimate estimate = mean_of_sides(below, above);
   estimate.name = fmt::format("mean of {} settings{}", settings_.size(),
                               sides_count_alike(below, above) ? ", both sides alike" : "");
+  if (given_up_ > 0) {
+    estimate.remark = fmt::format("{} of {} adjustments ended without a setting", given_up_, at_);
+  }
   return {estimate};
 }
 

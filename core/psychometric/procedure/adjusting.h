@@ -37,7 +37,6 @@ class Adjusting final : public Procedure {
   std::vector<Estimate> estimates() const override;
 
   const std::vector<double>& settings() const noexcept { return settings_; }
-  int given_up() const noexcept { return given_up_; }  // adjustments without a setting
 
  private:
   void begin();

@@ -30,7 +30,7 @@ Estimate mean_over(const std::vector<std::vector<double>>& sides) {
     inverse += 1.0 / count;
   }
   Estimate estimate{"", middle, {}};
-  if (freedom > 0.0) {
+  if (freedom > 0.0 && squares > 0.0) {  // values that do not vary tell no deviation
     estimate.deviation = std::sqrt(squares / freedom * inverse) / n;
     estimate.freedom = freedom;
   }

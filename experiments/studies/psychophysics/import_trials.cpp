@@ -42,14 +42,35 @@ std::string level_of(const TrialsDefinition& d, const trials::TrialsPlan& plan) 
   return !plan.level.empty() ? plan.level : d.tracks.empty() ? "" : d.tracks.front().variable;
 }
 
+/// The definition's factors, and behind them what else its analysis tells trials apart by: values
+/// of blocks and [variables].
+std::vector<std::string> needed_factors(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
+  std::vector<std::string> needed;
+  if (!d.order.factors.empty()) {
+    needed = d.root().table("factors").keys_as_written();
+  }
+  std::vector<std::string> named = plan.by;
+  named.insert(named.end(), {plan.stimulus, plan.paired.first, plan.paired.second});
+  const auto has = [](const std::vector<std::string>& names, const std::string& name) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  // Those have columns of their own, or follow from the trial.
+  const std::vector<std::string> others{"",      "group", "session",     "condition",      "probe",
+                                        "track", "block", trials::kItem, level_of(d, plan)};
+  for (const std::string& name : named) {
+    if (!has(others, name) && !has(needed, name)) {
+      needed.push_back(name);
+    }
+  }
+  return needed;
+}
+
 /// Takes the columns that are called as the definition's factors and level are. Factors come in the
 /// order of its [factors], so that the levels of a condition do.
 void add_columns_of(const TrialsDefinition& d, const trials::TrialsPlan& plan, const fs::path& file,
                     trials::TrialColumns& columns) {
   const analysis::CsvTable table = analysis::CsvTable::load(file);
-  const std::vector<std::string> written = d.order.factors.empty()
-                                               ? std::vector<std::string>()
-                                               : d.root().table("factors").keys_as_written();
+  const std::vector<std::string> written = needed_factors(d, plan);
   for (const std::string& factor : written) {
     if (std::ranges::find(columns.factors, factor, &trials::FactorColumn::variable) !=
         columns.factors.end()) {

@@ -21,16 +21,20 @@ namespace {
 using analysis::trials::AnalysisKind;
 using analysis::trials::PlanDefaults;
 
-/// 1 / choices where a procedure learns whether the first answer was right; nothing where an answer
-/// "yes", or a formula of it, is what counts.
-std::optional<double> guess_of(const protocols::TrialsDefinition& d) {
-  const bool formula = std::any_of(d.tracks.begin(), d.tracks.end(),
-                                   [](const auto& track) { return !track.counts.empty(); });
-  if (formula || d.questions.empty() || d.questions.front().correct.empty() ||
-      d.questions.front().choices.size() < 2) {
-    return std::nullopt;
+/// The answers that somebody may give, and behind them one that silence gives where two others can
+/// be chosen: "missed" is no alternative of a guess, and "stay" beside "go" alone is one.
+analysis::trials::PlanQuestion plan_question(const protocols::TrialQuestion& question) {
+  analysis::trials::PlanQuestion known{question.name, {}, false, !question.correct.empty()};
+  if (question.has_choices()) {
+    known.choices = question.answers();
   }
-  return 1.0 / static_cast<double>(d.questions.front().choices.size());
+  const int silent = question.silent_choice();
+  if (silent >= 0 && known.choices.size() > 2) {
+    known.last_is_silent = true;
+    std::rotate(known.choices.begin() + silent, known.choices.begin() + silent + 1,
+                known.choices.end());
+  }
+  return known;
 }
 
 void add_names(const protocols::TrialsDefinition& d, PlanDefaults& defaults) {
@@ -217,14 +221,18 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
       defaults.levels["block"].push_back(block.name);
     }
   }
-  if (!d.questions.empty() && d.questions.front().has_choices()) {
-    defaults.choices = d.questions.front().answers();
-  }
+  std::ranges::transform(d.questions, std::back_inserter(defaults.questions), plan_question);
+  defaults.counts_formula = std::ranges::any_of(
+      d.tracks, [](const protocols::Track& track) { return !track.counts.empty(); });
+  std::ranges::copy_if(defaults.factors, std::back_inserter(defaults.within_settings),
+                       [&](const std::string& factor) {
+                         return factor != "group" &&
+                                std::ranges::any_of(d.tracks, [&](const protocols::Track& track) {
+                                  return std::ranges::find(track.by, factor) == track.by.end();
+                                });
+                       });
   for (const questions::Page& page : d.pages.pages) {
     defaults.pages.push_back(page.name);
-  }
-  for (std::size_t i = 1; i < d.questions.size() && defaults.rating.empty(); ++i) {
-    defaults.rating = d.questions[i].correct.empty() ? d.questions[i].name : std::string();
   }
   if (d.tracks.empty()) {
     return defaults;
@@ -234,7 +242,6 @@ PlanDefaults plan_defaults(const protocols::TrialsDefinition& d) {
   defaults.kind = track.learns_from == OutcomeForm::kMagnitude    ? AnalysisKind::kMagnitude
                   : track.learns_from == OutcomeForm::kAdjustment ? AnalysisKind::kAdjustment
                                                                   : AnalysisKind::kPsychometric;
-  defaults.guess = guess_of(d);
   defaults.procedures = levels_of_procedures(d);
   return defaults;
 }

@@ -270,6 +270,19 @@ std::vector<std::string> TrialsStudy::analysis_warnings(const protocols::Definit
                     "name the one that is meant (level = \"{0}\")",
                     plan.level));
   }
+  if (plan.kind == trials::AnalysisKind::kPursuit && trials_of(d).root().has("cursor")) {
+    warnings.emplace_back(
+        "the analysis of pursuit compares the target with the tool, not with the cursor that is "
+        "seen: with its gain, turn or delay, error, gain and lag are those of the hand");
+  }
+  if (plan.kind == trials::AnalysisKind::kAdjustment) {
+    for (const std::string& factor : plan_defaults(trials_of(d)).within_settings) {
+      warnings.push_back(fmt::format(
+          "{0} varies while a level is adjusted, so that settings belong to no level of it; add by "
+          "= [\"{0}\"] to the procedure if each has settings of its own",
+          factor));
+    }
+  }
   for (const protocols::Track& track : trials_of(d).tracks) {
     const bool outside = plan.function.axis.scale != psychometric::Scale::kLinear &&
                          track.low <= plan.function.axis.origin;

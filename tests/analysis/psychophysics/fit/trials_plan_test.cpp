@@ -1,7 +1,10 @@
 #include "analysis/psychophysics/fit/trials_plan.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "core/base/definition/table.h"
 #include "core/base/error.h"
@@ -18,7 +21,7 @@ PlanDefaults defaults() {
   d.factors = {"visual"};
   d.names = {"track", "condition"};
   d.procedures = {{"level", {psychometric::Scale::kLog10, 300.0, "N/m"}, std::nullopt}};
-  d.guess = 0.5;
+  d.questions = {{"answer", {"first", "second"}, false, true}};
   return d;
 }
 
@@ -103,7 +106,7 @@ TEST(TrialsPlanTest, AFunctionFallsAsTheProcedureDoes) {
   EXPECT_TRUE(read("[analysis]\nbayesian = true\n", d).function.falling);
   EXPECT_EQ(read("[analysis]\nbayesian = true\n", d).function_name, "neg_norm");
   EXPECT_TRUE(read("[analysis]\nfunction = \"neg_logistic\"\n", d).function.falling);
-  EXPECT_FALSE(read("[analysis]\nfunction = \"norm\"\nyes = \"firmer\"\n", d).function.falling);
+  EXPECT_FALSE(read("[analysis]\nfunction = \"norm\"\nyes = \"first\"\n", d).function.falling);
   EXPECT_THAT(problems_of("[analysis]\nfunction = \"norm\"\n", d),
               HasSubstr("\"neg_norm\", which falls as the procedure's right answers do"));
 }
@@ -187,7 +190,7 @@ PlanDefaults defaults_of_cues() {
   PlanDefaults d = defaults();
   d.factors = {"noise", "conflict"};
   d.names = {"modality"};
-  d.guess.reset();
+  d.questions.clear();
   d.cues.levels = {{"modality", {"hand", "eye", "both"}}, {"noise", {"0", "0.67"}}};
   d.cues.intervals = {"standard", "comparison"};
   d.cues.variables = {"felt", "seen"};
@@ -252,7 +255,7 @@ TEST(TrialsPlanTest, KeysOfMovementsAreLeftToTheirAnalysis) {
 
 TEST(TrialsPlanTest, DiffusionIsForTwoChoices) {
   PlanDefaults d = defaults();
-  d.choices = {"left", "right"};
+  d.questions = {{"answer", {"left", "right"}}};
   const std::string text =
       "[analysis]\nkind = \"times\"\ndiffusion = true\nstart_point = 0.4\n"
       "contaminants = 0.05\n";
@@ -260,7 +263,7 @@ TEST(TrialsPlanTest, DiffusionIsForTwoChoices) {
   EXPECT_TRUE(plan.diffusion);
   EXPECT_EQ(plan.diffusion_options.start, 0.4);
   EXPECT_EQ(plan.diffusion_options.contaminants, 0.05);
-  d.choices.emplace_back("neither");
+  d.questions[0].choices.emplace_back("neither");
   EXPECT_THAT(problems_of(text, d), HasSubstr("two choices"));
   EXPECT_THAT(problems_of("[analysis]\nkind = \"none\"\ndiffusion = true\n"),
               HasSubstr("diffusion"));
@@ -268,27 +271,96 @@ TEST(TrialsPlanTest, DiffusionIsForTwoChoices) {
 
 TEST(TrialsPlanTest, MetacognitionNeedsAQuestionOfConfidenceAndTwoStimuli) {
   PlanDefaults d = defaults();
-  d.choices = {"left", "right"};
+  d.questions = {{"answer", {"yes", "no"}}};
   const std::string detection = "[analysis]\nkind = \"detection\"\nmetacognition = true\n";
   const std::string identification =
       "[analysis]\nkind = \"identification\"\nmetacognition = true\n";
   EXPECT_THAT(problems_of(detection, d), HasSubstr("confidence"));
-  d.rating = "sure";
+  d.questions.push_back({"sure", {}});
   EXPECT_TRUE(read(detection, d).metacognition);
   EXPECT_TRUE(read(identification, d).metacognition);
-  d.choices.emplace_back("neither");
+  d.questions[0].choices.emplace_back("neither");
   EXPECT_THAT(problems_of(identification, d), HasSubstr("two choices"));
+}
+
+TEST(TrialsPlanTest, TheGuessRateIsThatOfTheQuestionThatCounts) {
+  PlanDefaults d = defaults();
+  d.questions = {{"sure", {}}, {"what", {"a", "b", "c", "d"}, false, true}};
+  d.produced.variables = {"level", "visual"};
+  EXPECT_TRUE(read("[analysis]\n", d).guess_free) << "no answer of the first is right";
+  EXPECT_EQ(read("[analysis]\nquestion = \"what\"\n", d).function.guess, 0.25);
+  EXPECT_TRUE(read("[analysis]\nquestion = \"what\"\nyes = \"a\"\n", d).guess_free);
+  d.questions = {{"answer", {"first", "second", "missed"}, true, true}};
+  EXPECT_EQ(read("[analysis]\n", d).function.guess, 0.5) << "nobody guesses silence";
+  EXPECT_TRUE(read("[analysis]\nyes = \"missed\"\n", d).guess_free);
+  d.counts_formula = true;
+  EXPECT_TRUE(read("[analysis]\n", d).guess_free);
+  EXPECT_EQ(read("[analysis]\nquestion = \"answer\"\n", d).function.guess, 0.5)
+      << "then it counts whether the answer is right";
+}
+
+TEST(TrialsPlanTest, AnIdentificationTakesTheChoicesOfItsQuestion) {
+  PlanDefaults d = defaults();
+  d.questions = {{"sure", {}}, {"what", {"soft", "stiff", "missed"}, true, true}};
+  const TrialsPlan plan = read("[analysis]\nkind = \"identification\"\nquestion = \"what\"\n", d);
+  EXPECT_THAT(plan.choices, ElementsAre("soft", "stiff", "missed"));
+  EXPECT_EQ(plan.alternatives(), 2);
+  EXPECT_EQ(plan.rating, "sure");
+}
+
+TEST(TrialsPlanTest, NamesOfAnswersAreThoseOfTheDefinition) {
+  PlanDefaults d = defaults();
+  d.questions = {{"present", {"felt", "nothing"}}, {"sure", {}}};
+  d.produced.variables = {"level", "visual"};
+  const std::string detection = "[analysis]\nkind = \"detection\"\n";
+  EXPECT_THAT(problems_of(detection, d),
+              HasSubstr("analysis.yes is missing, and no answer is \"yes\"; add the one that says "
+                        "that there was a signal: felt, nothing"));
+  EXPECT_EQ(read(detection + "yes = \"felt\"\n", d).yes, "felt");
+  EXPECT_THAT(problems_of(detection + "yes = \"Felt\"\n", d),
+              HasSubstr("analysis.yes is \"Felt\"; allowed: an answer: felt, nothing"));
+  EXPECT_THAT(problems_of(detection + "yes = \"felt\"\nrating = \"sur\"\n", d),
+              HasSubstr("analysis.rating is \"sur\"; allowed: a question: present, sure"));
+  EXPECT_THAT(problems_of("[analysis]\nquestion = \"presnt\"\n", d),
+              HasSubstr("analysis.question is \"presnt\""));
+  EXPECT_THAT(problems_of("[analysis]\nlevel = \"levl\"\n", d),
+              HasSubstr("analysis.level is \"levl\"; allowed: a variable of the trials: level"));
+}
+
+TEST(TrialsPlanTest, TheFactorThatIsTheLevelMakesNoConditions) {
+  PlanDefaults d = defaults();
+  d.factors = {"size", "visual"};
+  d.produced.variables = {"size", "visual"};
+  for (const char* kind : {"psychometric", "magnitude", "times"}) {
+    const std::string text = fmt::format("[analysis]\nkind = \"{}\"\nlevel = \"size\"\n", kind);
+    const TrialsPlan plan = read(text, d);
+    EXPECT_EQ(plan.level, "size") << kind;
+    EXPECT_FALSE(std::ranges::count(plan.by, "size")) << kind;
+    EXPECT_THAT(problems_of(text + "by = [\"size\"]\n", d), HasSubstr("which `by` names, too"))
+        << kind;
+  }
+  EXPECT_THAT(read("[analysis]\nlevel = \"size\"\n", d).by, ElementsAre("visual"));
+}
+
+TEST(TrialsPlanTest, FactorsThatVaryWhileALevelIsAdjustedMakeNoConditions) {
+  PlanDefaults d = defaults();
+  d.kind = AnalysisKind::kAdjustment;
+  d.factors = {"ref", "visual"};
+  d.within_settings = {"ref"};
+  EXPECT_THAT(read("[analysis]\n", d).by, ElementsAre("visual"));
+  EXPECT_THAT(problems_of("[analysis]\nby = [\"ref\"]\n", d),
+              HasSubstr("varies while a level is adjusted; add by = [\"ref\"] to the procedure"));
 }
 
 TEST(TrialsPlanTest, TheStimulusIsTheFactorWhoseLevelsAreChoices) {
   PlanDefaults d = defaults();
   d.factors = {"cond", "stim"};
   d.levels = {{"cond", {"a", "b"}}, {"stim", {"weak", "strong"}}};
-  d.choices = {"weak", "strong"};
+  d.questions = {{"answer", {"weak", "strong"}}};
   const std::string identification = "[analysis]\nkind = \"identification\"\n";
   EXPECT_EQ(read(identification, d).stimulus, "stim");
   EXPECT_EQ(read(identification + "stimulus = \"cond\"\n", d).stimulus, "cond");
-  d.choices = {"left", "right"};
+  d.questions = {{"answer", {"left", "right"}}};
   EXPECT_EQ(read(identification, d).stimulus, "cond");
 }
 
@@ -296,14 +368,14 @@ TEST(TrialsPlanTest, OneOfTwoStimuliInATrialIsATaskOfOneInterval) {
   PlanDefaults d = defaults();
   const std::string identification = "[analysis]\nkind = \"identification\"\n";
   const std::string one = identification + "task = \"one interval\"\n";
-  d.choices = {"left", "right"};
+  d.questions = {{"answer", {"left", "right"}}};
   d.cues.intervals = {"only"};
   EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kOneInterval);
   d.cues.intervals = {"first", "second"};
   EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kForcedChoice);
   EXPECT_EQ(read(one, d).discrimination, DiscriminationTask::kOneInterval);
   d.cues.intervals = {"only"};
-  d.choices.emplace_back("neither");
+  d.questions[0].choices.emplace_back("neither");
   EXPECT_EQ(read(identification, d).discrimination, DiscriminationTask::kForcedChoice);
   EXPECT_THAT(problems_of(one, d), HasSubstr("two choices"));
 }

@@ -89,14 +89,42 @@ TEST(ReportApparatusTest, AMeasuredLevelHasTheUncertaintyOfBoth) {
   c.gain = 0.9;
   c.gain_low = 0.87;
   c.gain_high = 0.93;
-  const Estimated exact = as_measured({100.0, 100.0, 100.0}, c);
+  const Estimated exact = as_measured({100.0, 100.0, 100.0}, "N/m", c);
   EXPECT_NEAR(exact.value, 90.0, 1e-12);
   EXPECT_NEAR(exact.low, 87.0, 1e-12);
   EXPECT_NEAR(exact.high, 93.0, 1e-12);
-  const Estimated both = as_measured({100.0, 100.0 - 4.0 / 0.9, 100.0 + 4.0 / 0.9}, c);
+  const Estimated both = as_measured({100.0, 100.0 - 4.0 / 0.9, 100.0 + 4.0 / 0.9}, "N/m", c);
   EXPECT_NEAR(both.low, 85.0, 1e-9) << "3 and 4 are 5";
   EXPECT_NEAR(both.high, 95.0, 1e-9);
-  EXPECT_TRUE(std::isnan(as_measured({100.0}, c).low)) << "an interval that is not known";
+  EXPECT_TRUE(std::isnan(as_measured({100.0}, "N/m", c).low)) << "an interval that is not known";
+}
+
+TEST(ReportApparatusTest, AForceLosesTheDeadZone) {
+  device::CertifiedForce c;
+  c.gain = c.gain_low = c.gain_high = 0.6;
+  c.dead_zone = 0.004;
+  EXPECT_NEAR(as_measured({0.02}, "N·m", c).value, 0.6 * 0.016, 1e-15);
+  EXPECT_NEAR(as_measured({20.0}, "mN·m", c).value, 0.6 * 16.0, 1e-12);
+  EXPECT_EQ(as_measured({0.003}, "N·m", c).value, 0.0);
+  EXPECT_NEAR(as_measured({0.02}, "N·m/rad", c).value, 0.6 * 0.02, 1e-15) << "at large forces";
+}
+
+TEST(ReportApparatusTest, LevelsAreMeasuredByThePartThatTheyActOn) {
+  device::Certificate c;
+  c.gain = 0.9;
+  c.rotation.emplace().gain = 0.6;
+  c.grip.emplace().gain = 0.5;
+  const std::string devices = "[devices.stylus]\n[devices.pinch]\ngrip_of = \"stylus\"\n";
+  const std::string on_grip = "[fields.squeeze]\ntype = \"push\"\ndevice = \"pinch\"\n";
+  const std::string on_tip = "[fields.hold]\ntype = \"push\"\ndevice = \"stylus\"\n";
+  EXPECT_EQ(figures_of("N", c, devices).value().gain, 0.9);
+  EXPECT_EQ(figures_of("N·m", c, devices).value().gain, 0.6);
+  EXPECT_EQ(figures_of("N", c, devices + on_grip).value().gain, 0.5);
+  EXPECT_EQ(figures_of("N/m", c, devices + on_tip).value().gain, 0.9);
+  EXPECT_FALSE(figures_of("N", c, devices + on_grip + on_tip));
+  c.rotation.reset();
+  EXPECT_FALSE(figures_of("N·m", c, devices));
+  EXPECT_FALSE(figures_of("m", c, devices));
 }
 
 TEST(ReportApparatusTest, OnlyLevelsThatGrowWithForceAreMeasured) {

@@ -144,6 +144,7 @@ TEST(MeanInterval, CoversTheMeanAsOftenAsItSays) {
   const Mean same = mean_and_interval(Values{0.1, 0.1, 0.1});
   EXPECT_DOUBLE_EQ(*same.value, 0.1);
   EXPECT_THAT(same.interval.because(), HasSubstr("do not vary"));
+  EXPECT_THAT(mean_interval(Values{0.3, 0.1 + 0.2}).because(), HasSubstr("do not vary"));
 }
 
 TEST(Quantile, IsLinearBetweenOrderStatistics) {
