@@ -101,7 +101,8 @@ std::optional<WallBracket> wall_bracket(const std::vector<WallStep>& walls) {
   }
   WallBracket bracket;
   for (const WallStep& wall : walls) {
-    if (!wall.passive && (bracket.active == 0.0 || wall.stiffness < bracket.active)) {
+    bracket.met = bracket.met && wall.met;
+    if (wall.met && !wall.passive && (bracket.active == 0.0 || wall.stiffness < bracket.active)) {
       bracket.active = wall.stiffness;
     }
   }

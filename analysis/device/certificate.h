@@ -22,6 +22,7 @@ struct RestNoise {
 struct WallBracket {
   double passive{0.0};  // 0: none did [N/m]
   double active{0.0};   // 0: all were passive [N/m]
+  bool met{true};       // the handle came to every wall that was tried
 };
 
 /// The figures of a certificate; a part is empty if its measurement is missing.

@@ -26,6 +26,7 @@ struct PartRecord {
 struct WallStep {
   double stiffness;  // [N/m]
   bool passive;      // it neither swung on nor gave energy
+  bool met{true};    // it was let go in front of the wall and came to it; else nothing is known
 };
 
 /// The record of a certificate's measurement, of one part of the handle: places and forces of a

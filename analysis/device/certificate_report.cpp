@@ -15,12 +15,12 @@
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/files/staging.h"
 #include "core/base/file_text.h"
+#include "core/device/certificate.h"
 #include "core/device/handle_part.h"
 
 namespace haptrial::analysis {
 namespace {
 
-constexpr int kFormat = 1;
 /// @param number  of the driven axis
 const char* axis_name(const CertificateRecord& record, std::size_t number) {
   constexpr const char* kAxes[] = {"x", "y", "z"};
@@ -229,7 +229,11 @@ FindingList walls(const std::vector<WallStep>& steps) {
   for (const WallStep& step : steps) {
     table.rows.push_back(
         {{.name = "stiffness", .title = "Stiffness", .value = step.stiffness, .unit = "N/m"},
-         {.name = "verdict", .title = "Verdict", .value = step.passive ? "passive" : "swings"}});
+         {.name = "verdict",
+          .title = "Verdict",
+          .value = !step.met      ? "not met"
+                   : step.passive ? "passive"
+                                  : "swings"}});
   }
   list.tables = {table};
   return list;
@@ -319,7 +323,7 @@ std::vector<FindingList> certificate_findings(const std::vector<PartCertificate>
 std::string certificate_json(const std::vector<PartCertificate>& parts,
                              const std::vector<FindingList>& findings) {
   const CertificateRecord& first = parts.front().record;
-  nlohmann::ordered_json root{{"certificate", kFormat},
+  nlohmann::ordered_json root{{"certificate", device::kCertificateFormat},
                               {"device", first.device},
                               {"simulated", first.simulated},
                               {"with_sensor", first.has_sensor(CertificatePart::kGrid)}};

@@ -226,7 +226,9 @@ void add_rest(const CertificateRecord& record, const CertificateResult& result, 
       title_of(words, "Stiffest {wall} that stayed passive, and the softest that did not");
   if (!result.wall || result.wall->passive == 0.0) {
     row.push_back(missing("stiffest_wall", wall, "N/m",
-                          result.wall ? "none of those that were tried" : "it was not tried"));
+                          !result.wall       ? "it was not tried"
+                          : result.wall->met ? "none of those that were tried"
+                                             : "the handle did not come to the wall by itself"));
   } else {
     const double above = result.wall->active;
     row.push_back({.name = "stiffest_wall",

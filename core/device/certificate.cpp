@@ -12,10 +12,9 @@ constexpr const char* kNotFound = "not identified";
 void check_gain(Table& table, const CertifiedForce& c) {
   if (c.gain.has_value() != c.gain_low.has_value() ||
       c.gain.has_value() != c.gain_high.has_value()) {
-    table.reject("gain", "stands without one of gain_low and gain_high",
-                 "all three, or none of them");
+    table.reject("gain", "without one of gain_low and gain_high", "all three, or none of them");
   } else if (c.gain && (*c.gain < *c.gain_low || *c.gain > *c.gain_high)) {
-    table.reject("gain", "is outside of gain_low to gain_high", "a gain within its interval");
+    table.reject("gain", "outside of gain_low to gain_high", "a gain within its interval");
   }
 }
 

@@ -7,6 +7,9 @@
 
 namespace haptrial::device {
 
+/// The number of the form in which `certificate.json` is written and read.
+inline constexpr int kCertificateFormat = 1;
+
 /// The figures of one part of a handle by a certificate: in N for tip and grip, in N·m for a
 /// rotation.
 struct CertifiedForce {

@@ -68,7 +68,15 @@ void read_table(Table& table, VendorSetups& setups) {
 }
 template <auto member>
 VendorDevice::Limits limits_of(const VendorSetups& setups) {
-  return {(setups.*member).max_force, (setups.*member).workspace_radius};
+  const auto& setup = setups.*member;
+  VendorDevice::Limits limits{setup.max_force, setup.workspace_radius};
+  if constexpr (requires { setup.max_torque; }) {
+    limits.max_torque = setup.max_torque;
+  }
+  if constexpr (requires { setup.max_grip_force; }) {
+    limits.max_grip_force = setup.max_grip_force;
+  }
+  return limits;
 }
 template <auto member>
 VendorDevice::Limits limits_of_board(const VendorSetups& setups) {

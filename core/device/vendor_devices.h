@@ -27,8 +27,10 @@ struct VendorSetups {
 /// above and an entry of vendor_devices().
 struct VendorDevice {
   struct Limits {
-    double max_force;         // that its set-up allows [N]
-    double workspace_radius;  // likewise [m]
+    double max_force;            // that its set-up allows [N]
+    double workspace_radius;     // likewise [m]
+    double max_torque{0.0};      // likewise, of a device that may turn the hand [N·m]
+    double max_grip_force{0.0};  // likewise, of one that may have a gripper [N]
   };
   const char* name;    // as --device takes it
   const char* table;   // of a definition or a lab file

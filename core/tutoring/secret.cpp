@@ -53,16 +53,26 @@ void Secret::make(const std::filesystem::path& file) {
   sodium_bin2hex(text.data(), text.size(), bits.data(), bits.size());
   text.back() = '\n';
   const int fd = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  const int why = errno;
-  const bool kept = fd >= 0 && ::write(fd, text.data(), text.size()) == ssize_t{2 * 32 + 1};
+  int why = errno;
+  bool kept = false;
   if (fd >= 0) {
+    const ssize_t written = ::write(fd, text.data(), text.size());
+    why = written < 0 ? errno : ENOSPC;
+    kept = written == ssize_t{2 * 32 + 1};
     ::close(fd);
+    if (!kept) {
+      ::unlink(file.c_str());  // so that the next try can make it
+    }
   }
   sodium_memzero(bits.data(), bits.size());
   sodium_memzero(text.data(), text.size());
+  const std::string sentence =
+      fmt::format("{}: the secret cannot be written ({})", file.string(), std::strerror(why));
+  if (fd < 0) {
+    throw InputError(sentence);
+  }
   if (!kept) {
-    throw InputError(fmt::format("{}: the secret cannot be written ({})", file.string(),
-                                 std::strerror(fd < 0 ? why : ENOSPC)));
+    throw RunError(sentence);
   }
 }
 

@@ -18,7 +18,8 @@ class Secret {
   ///         characters, or may be read by other users of the machine
   static Secret read(const std::filesystem::path& file);
   /// A new file with a secret of 256 random bits, which only its owner may read.
-  /// @throws InputError where the file exists or cannot be made; RunError as Secret::key() does
+  /// @throws InputError where the file exists or cannot be made; RunError where it cannot be
+  ///         written, which leaves no file, or the machine gives no random numbers
   static void make(const std::filesystem::path& file);
   /// @throws InputError for a text that is too short or too long. @param where  for the message
   Secret(std::string_view text, std::string_view where);

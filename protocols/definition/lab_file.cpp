@@ -19,39 +19,69 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// A part of a described finding; nothing if the figure is not defined.
-std::optional<double> number_of(const Json& findings, const char* name, const char* part) {
-  const auto finding = findings.find(name);
-  if (finding == findings.end() || !finding->is_object()) {
-    return std::nullopt;
-  }
-  const auto at = finding->find(part);
-  return at == finding->end() || !at->is_number() ? std::nullopt : std::optional(at->get<double>());
-}
+/// The described findings of one part of a handle, of a certificate's file.
+struct PartFindings {
+  const Json& findings;
+  std::string name;  // of the file and the list, for sentences
 
-void read_figures(const Json& findings, device::CertifiedForce& c) {
-  c.gain = number_of(findings, "gain", "estimate");
-  c.gain_low = number_of(findings, "gain", "low_95");
-  c.gain_high = number_of(findings, "gain", "high_95");
+  /// A number of a finding; nothing if the figure is not defined.
+  /// @param unit  in which it is stated, if the file says in which
+  /// @throws InputError for another unit, or for something that is no number
+  std::optional<double> number(const char* figure, const char* part, const char* unit) const {
+    const auto finding = findings.find(figure);
+    if (finding == findings.end() || !finding->is_object()) {
+      return std::nullopt;
+    }
+    const auto at = finding->find(part);
+    if (at == finding->end() || at->is_null()) {
+      return std::nullopt;
+    }
+    if (!at->is_number()) {
+      throw InputError(fmt::format("{}.{}.{} is {}; allowed: a number", name, figure, part,
+                                   at->dump(-1, ' ', false, Json::error_handler_t::replace)));
+    }
+    if (const auto own = finding->find("unit"); own != finding->end() && *own != unit) {
+      throw InputError(fmt::format("{}.{}.unit is {}; allowed: {}", name, figure,
+                                   own->dump(-1, ' ', false, Json::error_handler_t::replace),
+                                   Json(unit).dump()));
+    }
+    return at->get<double>();
+  }
+
+  /// A figure that is never below zero; noise takes the estimate of a small one there.
+  std::optional<double> size(const char* figure, const char* unit) const {
+    const auto estimate = number(figure, "estimate", unit);
+    return estimate ? std::optional(std::max(*estimate, 0.0)) : std::nullopt;
+  }
+};
+
+/// @param force, stiffness  units of the part
+void read_figures(const PartFindings& part, const char* force, const char* stiffness,
+                  device::CertifiedForce& c) {
+  c.gain = part.number("gain", "estimate", "");
+  c.gain_low = part.number("gain", "low_95", "");
+  c.gain_high = part.number("gain", "high_95", "");
   if (!c.gain || !c.gain_low || !c.gain_high) {
     c.gain = c.gain_low = c.gain_high = std::nullopt;
   }
-  c.dead_zone = number_of(findings, "dead_zone", "estimate");
-  c.friction = number_of(findings, "friction", "estimate");
-  c.force_noise = number_of(findings, "force_noise", "estimate");
-  c.delay = number_of(findings, "delay", "estimate");
-  c.stiffest_wall = number_of(findings, "stiffest_wall", "low_95");
+  c.dead_zone = part.size("dead_zone", force);
+  c.friction = part.size("friction", force);
+  c.force_noise = part.size("force_noise", force);
+  c.delay = part.size("delay", "s");
+  c.stiffest_wall = part.number("stiffest_wall", "low_95", stiffness);
 }
 
 /// The key figures of a further part; nothing if the certificate does not state one.
-std::optional<device::CertifiedForce> figures_of(const Json& root, const char* summary) {
+std::optional<device::CertifiedForce> figures_of(const Json& root, const std::string& file,
+                                                 const std::string& summary, const char* force,
+                                                 const char* stiffness) {
   const auto list = root.find(summary);
   if (list == root.end() || !list->is_object() || !list->contains("findings") ||
       !list->at("findings").is_object()) {
     return std::nullopt;
   }
   device::CertifiedForce c;
-  read_figures(list->at("findings"), c);
+  read_figures({list->at("findings"), file + ": " + summary}, force, stiffness, c);
   const bool any =
       c.gain || c.dead_zone || c.friction || c.force_noise || c.delay || c.stiffest_wall;
   return any ? std::optional(c) : std::nullopt;
@@ -84,7 +114,7 @@ std::string quoted(const std::string& text) {
 }
 
 /// Key figures of a certificate that `haptrial device-test --certificate` wrote.
-/// @throws InputError if the file cannot be read or is no certificate
+/// @throws InputError if the file cannot be read, is no certificate or is one of another format
 device::Certificate read_certificate(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) {
@@ -106,15 +136,20 @@ device::Certificate read_certificate(const std::filesystem::path& file) {
         "FOLDER`",
         file.string()));
   }
-  const Json& findings = root["summary"]["findings"];
+  if (root["certificate"] != device::kCertificateFormat) {
+    throw InputError(fmt::format(
+        "{} is a certificate of format {}; allowed: format {}; make it again with this version",
+        file.string(), root["certificate"].dump(), device::kCertificateFormat));
+  }
   device::Certificate c;
   c.file = file.filename().string();
   c.checksum = fmt::format("{:016x}", fnv1a(text));
   c.device = root["device"].get<std::string>();
   c.simulated = root["simulated"].get<bool>();
-  read_figures(findings, c);
-  c.rotation = figures_of(root, "rotation_summary");
-  c.grip = figures_of(root, "grip_summary");
+  const std::string name = file.string();
+  read_figures({root["summary"]["findings"], name + ": summary"}, "N", "N/m", c);
+  c.rotation = figures_of(root, name, "rotation_summary", "N·m", "N·m/rad");
+  c.grip = figures_of(root, name, "grip_summary", "N", "N/m");
   return c;
 }
 

@@ -97,6 +97,8 @@ TEST_F(CertificateCommandTest, AHandleThatFallsByTheWeightThatIsLeftIsCaught) {
   EXPECT_NEAR(root["summary"]["findings"]["gain"]["estimate"].get<double>(), 0.87, 0.01);
 }
 
+/// The force that holds a falling handle on another axis makes the command longer than its part
+/// along the axis, so that the dead zone takes less off that part.
 TEST_F(CertificateCommandTest, WithoutASensorItSaysWhatItTakes) {
   const test::CommandResult result = run("device-test virtual --certificate out --without-sensor");
   ASSERT_EQ(result.status, 0) << result.output << result.errors;
@@ -208,6 +210,40 @@ TEST_F(CertificateCommandTest, AFileThatIsNoCertificateIsRefused) {
   const test::CommandResult other = run("validate study.toml");
   EXPECT_EQ(other.status, 2);
   EXPECT_THAT(other.errors, HasSubstr("arm.json is no certificate"));
+}
+
+TEST_F(CertificateCommandTest, FiguresOfAnotherFormatOrUnitAreRefused) {
+  write(at("study.toml"), naming(shipped_text("stiffness_discrimination.toml"), "arm.json"));
+  const auto refused = [&](const std::string& text, const char* sentence) {
+    write(at("arm.json"), text);
+    const test::CommandResult result = run("validate study.toml");
+    EXPECT_EQ(result.status, 2) << text;
+    EXPECT_THAT(result.errors, HasSubstr(sentence));
+  };
+  std::string later = certificate("");
+  later.replace(later.find("\"certificate\": 1"), 16, "\"certificate\": 99");
+  refused(later, "arm.json is a certificate of format 99; allowed: format 1");
+  refused(certificate(R"("friction": {"estimate": 100.0, "unit": "mN"})"),
+          "arm.json: summary.friction.unit is \"mN\"; allowed: \"N\"");
+  refused(certificate(R"("friction": {"estimate": "0.1", "unit": "N"})"),
+          "arm.json: summary.friction.estimate is \"0.1\"; allowed: a number");
+  refused(certificate(R"("gain": {"estimate": 0.9, "low_95": 0.95, "high_95": 0.97})"),
+          "certificate.gain is outside of gain_low to gain_high; allowed: ");
+  write(at("arm.json"), certificate(R"("friction": {"estimate": 0.1, "unit": "N"})"));
+  EXPECT_EQ(run("validate study.toml").status, 0);
+}
+
+/// Noise takes the estimate of a friction or a delay that is nearly none below zero.
+TEST_F(CertificateCommandTest, FiguresJustBelowZeroCountAsZero) {
+  write(at("study.toml"), naming(shipped_text("stiffness_discrimination.toml"), "arm.json"));
+  std::string text = certificate(R"("friction": {"estimate": -1e-6, "unit": "N"},
+      "dead_zone": {"estimate": -1e-9, "unit": "N"}, "delay": {"estimate": -1e-7, "unit": "s"})");
+  text.insert(text.rfind('}'), R"(, "rotation_summary":
+      {"findings": {"friction": {"estimate": -1e-6, "unit": "N·m"}}})");
+  write(at("arm.json"), text);
+  const test::CommandResult valid = run("validate study.toml");
+  EXPECT_EQ(valid.status, 0) << valid.errors;
+  EXPECT_THAT(valid.output, HasSubstr("study.toml: valid"));
 }
 
 }  // namespace

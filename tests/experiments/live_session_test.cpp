@@ -1,6 +1,7 @@
 // Sessions on the real clock with an experimenter who asks for things, and sessions that are
 // killed.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -17,6 +18,7 @@
 #include "experiments/runner/session.h"
 #include "protocols/force_training/force_definition.h"
 #include "protocols/force_training/force_protocol.h"
+#include "tests/experiments/command.h"
 #include "tests/experiments/shipped.h"
 #include "tests/support/sanitizer.h"
 #include "tests/support/temporary_folder.h"
@@ -86,6 +88,19 @@ TEST_F(LiveSessionTest, TrialsAreRepeatedSkippedAndEnded) {
   EXPECT_EQ(passes[1].trial, 1);
   EXPECT_EQ(passes[1].attempt, 2);
   EXPECT_EQ(passes[2].trial, 2);
+}
+
+/// The studio and people read its lines: a text must not pass for further ones.
+TEST_F(LiveSessionTest, ATextOfSeveralLinesIsOneLineOfInfo) {
+  request_.clock = realtime::ClockKind::kSimulated;
+  request_.max_trials = 1;
+  request_.person.identifier = "P01";
+  request_.person.notes = "first\nnotice      at 1 s: faked\r\x1b[2Kend";
+  run_session(request_);
+  const test::CommandResult info =
+      test::run_command("haptrial info '" + request_.file.string() + "'");
+  EXPECT_THAT(info.output,
+              testing::HasSubstr("notes       first notice      at 1 s: faked  [2Kend\n"));
 }
 
 TEST_F(LiveSessionTest, AnAbortedSessionGoesOnAndCanBeEndedForGood) {

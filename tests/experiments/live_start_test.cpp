@@ -211,6 +211,79 @@ TEST_F(LiveStartTest, TheEmergencyCardIsFilledInFromDefinitionAndLabFile) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+/// The card is read when a hand is in danger: it names the force of each part that is driven.
+TEST_F(LiveStartTest, TheCardNamesTheGreatestForceOfEachPartOfTheHandle) {
+  test::write_text(folder_ / "study.toml", R"([experiment]
+protocol = "trials"
+name = "parts"
+[design]
+participants = 1
+[envelope]
+max_force = 2.0
+[force_dimension]
+max_grip_force = 3.0
+[devices.stylus]
+start = [0.0, 0.0, 0.0]
+[devices.knob]
+rotation_of = "stylus"
+radius = 0.025
+max_force = 0.08
+handle_mass = 4e-5
+[devices.pinch]
+grip_of = "stylus"
+max_force = 4.0
+start = [0.03, 0.0, 0.0]
+[[stages]]
+name = "wait"
+until = { time = 0.3 }
+[response]
+question = "Now?"
+choices = [{ value = "yes" }, { value = "no" }]
+[[blocks]]
+name = "one"
+trials = 1
+[observer]
+decides = "yes"
+)");
+  const auto card_of = [&](const std::string& name, const std::string& device) {
+    const fs::path file = folder_ / (name + ".html");
+    const CommandResult made =
+        start("--device " + device + " --console --card '" + file.string() + "'");
+    EXPECT_EQ(made.status, 0) << made.errors;
+    return made.status == 0 ? test::read_text(file) : "";
+  };
+  EXPECT_THAT(card_of("virtual", "virtual"),
+              HasSubstr("Greatest force on the hand: 2 N (stylus, tip) and 0.08 N·m (knob, "
+                        "rotation) and 4 N (pinch, grip)."));
+  EXPECT_THAT(card_of("weaker", "force-dimension"), HasSubstr("3 N (pinch, grip)"))
+      << "the driver gives no more";
+}
+
+/// A pilot with other values, streams and a backup goes on with them, not with the definition's.
+TEST_F(LiveStartTest, TheCardsLineToGoOnHasEveryOptionOfTheSession) {
+  write_study();
+  const std::string given =
+      " --console --watch 127.0.0.1 --lsl-optional --pilot --set envelope.ramp_in=0.3 --seed 5";
+  const fs::path file = folder_ / "card.html";
+  const CommandResult made = start(given + " --backup '" + (folder_ / "disk").string() +
+                                   "' --subject P01 --age-band 18-25 --consent yes "
+                                   "--card '" +
+                                   file.string() + "'");
+  ASSERT_EQ(made.status, 0) << made.errors;
+  const std::string page = test::read_text(file);
+  const std::size_t begin = page.find("haptrial run ");
+  ASSERT_NE(begin, std::string::npos);
+  const std::string line = page.substr(begin, page.find("--resume", begin) - begin);
+  for (const char* words :
+       {" --console", " --watch 127.0.0.1", " --lsl-optional", " --pilot",
+        " --set envelope.ramp_in=0.3", " --seed 5", " --backup ", " --trials 1"}) {
+    EXPECT_THAT(line, HasSubstr(words));
+  }
+  for (const char* words : {"P01", "--age-band", "--consent", "--card", "--lsl "}) {
+    EXPECT_THAT(line, Not(HasSubstr(words))) << "the next participant has another";
+  }
+}
+
 TEST_F(LiveStartTest, AtATerminalTheCardNamesItsKeys) {
   if (!LiveCommand::has_terminals()) {
     GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";

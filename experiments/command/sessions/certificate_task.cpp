@@ -9,20 +9,26 @@ namespace {
 using analysis::CertificatePart;
 using Eigen::Vector3d;
 
-constexpr double kNear = 0.8;        // of the workspace, to which a free handle may fall
-constexpr double kHold = 80.0;       // beyond it [N/m]
-constexpr double kCalm = 4.0;        // [N·s/m]
-constexpr double kSoft = 0.01;       // beyond kNear, over which kCalm grows [m]
-constexpr double kPress = 1.0;       // on a wall [N]
-constexpr double kBack = 0.003;      // in front of the wall, from which the handle is let go [m]
-constexpr double kReady = 0.6;       // time to take it there [s]
-constexpr double kAtWall = 1.2;      // [s]
-constexpr double kFar = 0.03;        // further than any swing that is watched [m]
-constexpr double kSwing = 3e-4;      // from peak to peak, which counts as one [m]
-constexpr double kDying = 0.7;       // a swing that falls to less in a third of the time dies away
-constexpr double kStep = 1.3;        // from one wall to the next
-constexpr double kClose = 1.08;      // of active and passive, which ends the search
-constexpr double kStiffest = 20000;  // that is tried [N/m]
+constexpr double kNear = 0.8;         // of the workspace, to which a free handle may fall
+constexpr double kHold = 80.0;        // beyond it [N/m]
+constexpr double kCalm = 4.0;         // [N·s/m]
+constexpr double kSoft = 0.01;        // beyond kNear, over which kCalm grows [m]
+constexpr double kPress = 1.0;        // on a wall, of a device that gives it all [N]
+constexpr double kMostWall = 4.0;     // of a wall, likewise [N]
+constexpr double kBack = 0.003;       // in front of the wall, from which the handle is let go [m]
+constexpr double kReady = 0.6;        // shortest time to take it there [s]
+constexpr double kLongestBack = 4.0;  // longest, against friction [s]
+constexpr double kBackWithin = 8e-4;  // of that place [m]
+constexpr double kBackSpeed = 0.005;  // at which it counts as there [m/s]
+constexpr double kMostBack = 2.0;     // that takes it there, likewise [N]
+constexpr double kGather = 600.0;     // gain of the sum of what is missing [N/(m·s)]
+constexpr double kAtWall = 1.2;       // [s]
+constexpr double kFar = 0.03;         // further than any swing that is watched [m]
+constexpr double kSwing = 3e-4;       // from peak to peak, which counts as one [m]
+constexpr double kDying = 0.7;        // a swing that falls to less in a third of the time dies away
+constexpr double kStep = 1.3;         // from one wall to the next
+constexpr double kClose = 1.08;       // of active and passive, which ends the search
+constexpr double kStiffest = 20000;   // that is tried [N/m]
 
 /// @param most  that the device gives there [N]
 device::EnvelopeLimits certificate_limits(const device::DeviceInfo& info, double most,
@@ -47,17 +53,21 @@ std::size_t index(CertificatePart part) { return static_cast<std::size_t>(part);
 
 }  // namespace
 
+WallLadder::WallLadder(double rate, int axis, double most) noexcept
+    : rate_(rate), axis_(axis), share_(std::min(most / (kMostWall - kPress), 1.0)) {}
+
 Vector3d WallLadder::command(const PointState& tool) noexcept {
   const Vector3d along = Vector3d::Unit(axis_);
   const double x = tool.position[axis_];
-  const auto ready = std::lround(kReady * rate_);
+  const double v = tool.velocity[axis_];
+  if (!pressing_ && !is_ready(x, v)) {
+    return taking_back(x, v) * along;
+  }
   const auto at_wall = std::lround(kAtWall * rate_);
-  const long since = tick_++ - ready;
+  const long since = tick_++;
   if (since >= at_wall) {
     judge();
-  }
-  if (since < 0 || since >= at_wall) {
-    return std::clamp(-80.0 * (x - kBack) - 4.0 * tool.velocity[axis_], -2.0, 2.0) * along;
+    return taking_back(x, v) * along;
   }
   if (lost_ || std::abs(x) > kFar) {
     lost_ = true;
@@ -67,22 +77,50 @@ Vector3d WallLadder::command(const PointState& tool) noexcept {
   const bool first = since == 0 || 3 * (since - 1) / at_wall != static_cast<long>(third);
   low_[third] = first ? x : std::min(low_[third], x);
   high_[third] = first ? x : std::max(high_[third], x);
-  return (std::min(stiffness_ * std::max(-x, 0.0), 4.0) - kPress) * along;
+  return (std::min(stiffness_ * std::max(-x, 0.0), share_ * kMostWall) - share_ * kPress) * along;
+}
+
+/// Whether the handle is in front of the wall, or the time for it is over; it is let go then.
+bool WallLadder::is_ready(double x, double v) noexcept {
+  const bool there = std::abs(x - kBack) < kBackWithin && std::abs(v) < kBackSpeed;
+  ++tick_;
+  if (tick_ < std::lround(kReady * rate_) ||
+      !(there || tick_ >= std::lround(kLongestBack * rate_))) {
+    return false;
+  }
+  pressing_ = true;
+  released_ = x;
+  tick_ = 0;
+  return true;
+}
+
+/// Against friction the force grows until the handle moves.
+double WallLadder::taking_back(double x, double v) noexcept {
+  const double error = x - kBack;
+  const double wanted = -80.0 * error - 4.0 * v - gathered_;
+  const double most = share_ * kMostBack;
+  if (std::abs(wanted) < most) {
+    gathered_ += kGather * error / rate_;
+  }
+  return std::clamp(wanted, -most, most);
 }
 
 void WallLadder::judge() noexcept {
   const double middle = high_[1] - low_[1];
   const double last = high_[2] - low_[2];
   const bool swings = lost_ || (last > kSwing && last > kDying * middle);
-  steps_[count_++] = {stiffness_, !swings};
+  const bool met =
+      lost_ || (released_ > kBack - kBackWithin && std::min({low_[0], low_[1], low_[2]}) < 0.0);
+  steps_[count_++] = {stiffness_, met && !swings, met};
   (swings ? active_ : passive_) = stiffness_;
-  if (count_ == kMost || (swings && passive_ == 0.0) ||
+  if (!met || count_ == kMost || (swings && passive_ == 0.0) ||
       (active_ > 0.0 && active_ < kClose * passive_) || stiffness_ >= kStiffest) {
     done_ = true;
   }
   stiffness_ = active_ > 0.0 ? std::sqrt(active_ * passive_) : kStep * stiffness_;
   tick_ = 0;
-  lost_ = false;
+  pressing_ = lost_ = false;
+  gathered_ = 0.0;
 }
 
 std::vector<analysis::WallStep> WallLadder::steps() const {
@@ -102,7 +140,7 @@ CertificateTask::CertificateTask(device::Device& device, device::ForceSensor* se
                                    excitation)),
       parts_(std::move(parts)),
       mount_(std::move(mount)),
-      walls_(excitation.rate(), excitation.axes().front()) {
+      walls_(excitation.rate(), excitation.axes().front(), envelope_.limits().max_force) {
   record_.of = of;
   record_.radius = radius;
   record_.axes = excitation.axes();
@@ -188,10 +226,10 @@ bool CertificateTask::tick(const realtime::Tick& tick) noexcept {
 
 Vector3d CertificateTask::command(const device::DeviceReading& reading) noexcept {
   const CertificatePart part = parts_[at_];
-  if (part == CertificatePart::kWall) {
-    return walls_.command(reading.tool) + catching(reading.tool, excitation_.axes().front(), 1.0);
-  }
   Vector3d wanted = excitation_.command(part, tick_);
+  if (part == CertificatePart::kWall) {
+    wanted = walls_.command(reading.tool) + catching(reading.tool, excitation_.axes().front(), 1.0);
+  }
   if (is_free(part)) {
     wanted += excitation_.centring(part, tick_, reading.tool) +
               catching(reading.tool, excitation_.moved_axis(part, tick_),

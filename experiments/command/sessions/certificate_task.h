@@ -19,7 +19,8 @@
 namespace haptrial::experiments {
 
 /// Walls along one axis that grow stiffer until one swings on, then between the last two. The
-/// command itself presses the free handle against each, so that no hand damps it:
+/// command itself takes the free handle back from each and presses it against the next, so that no
+/// hand damps it; a handle that the press does not bring to a wall ends the search:
 ///
 ///     f = stiffness · max(-x, 0) - press        x along the axis
 class WallLadder {
@@ -27,22 +28,29 @@ class WallLadder {
   static constexpr std::size_t kMost = 40;  // walls
 
   /// @param axis  0 to 2 for x to z
-  WallLadder(double rate, int axis) noexcept : rate_(rate), axis_(axis) {}
+  /// @param most  that is commanded; under 3 N all forces are smaller in proportion > 0 [N]
+  WallLadder(double rate, int axis, double most) noexcept;
   /// @returns the command for the tick. Servo thread.
   Eigen::Vector3d command(const PointState& tool) noexcept;
   bool done() const noexcept { return done_; }
   std::vector<analysis::WallStep> steps() const;
 
  private:
+  bool is_ready(double x, double v) noexcept;
+  double taking_back(double x, double v) noexcept;
   void judge() noexcept;
 
   double rate_;
   int axis_;
+  double share_;  // of the forces at which a strong device presses and is taken back
   std::array<analysis::WallStep, kMost> steps_{};
   std::size_t count_{0};
   double stiffness_{200.0};               // of the wall now [N/m]
   double passive_{0.0}, active_{0.0};     // [N/m]
-  long tick_{0};                          // since this wall began
+  bool pressing_{false};                  // against the wall; else the handle is taken back
+  long tick_{0};                          // since that began
+  double gathered_{0.0};                  // force that friction took, of taking it back [N]
+  double released_{0.0};                  // x where the handle was let go [m]
   std::array<double, 3> low_{}, high_{};  // of x in the thirds of the time at the wall [m]
   bool lost_{false};                      // the handle went off
   bool done_{false};

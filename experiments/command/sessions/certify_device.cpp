@@ -134,7 +134,7 @@ const Prompts& prompts_of(device::Part part) {
       "keep the handle still: put it down, or clamp it",
       "let the handle go, with free space around it: the device moves it",
       "fix the known mass to the handle and let it go: the device moves it",
-      "take the mass off and let the handle go: the device presses it against walls",
+      "let the handle go, with free space around it: the device presses it against walls",
       "clamp the handle to the force sensor in the middle of the workspace",
   };
   static const Prompts rotation{
@@ -189,9 +189,11 @@ void run_certificate(CertificateTask& task, device::Device& device, realtime::Se
   auto begin = std::chrono::steady_clock::now();
   while (task.part() != analysis::CertificatePart::kDone) {
     if (told != task.part()) {
+      const bool loaded = told == CertificatePart::kLoaded;
       told = task.part();
       begin = std::chrono::steady_clock::now() + std::chrono::seconds(kCountdown);
-      fmt::print("-> {}; it begins in {} s\n", certificate_prompt(prompts, *told), kCountdown);
+      fmt::print("-> {}{}; it begins in {} s\n", loaded ? "take the mass off and " : "",
+                 certificate_prompt(prompts, *told), kCountdown);
       std::fflush(stdout);
     }
     if (std::chrono::steady_clock::now() >= begin) {

@@ -23,6 +23,14 @@
 namespace haptrial::experiments {
 namespace {
 
+/// A text that somebody wrote, within the one line that tells of it: with its line ends it could
+/// look like further lines.
+std::string in_one_line(std::string text) {
+  const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
+  std::ranges::replace_if(text, is_control, ' ');
+  return text;
+}
+
 void print_participant(const record::Participant& participant) {
   const std::array<std::pair<const char*, const std::string*>, 5> fields{
       {{"handedness", &participant.handedness},
@@ -32,7 +40,7 @@ void print_participant(const record::Participant& participant) {
        {"notes", &participant.notes}}};
   for (const auto& [name, value] : fields) {
     if (!value->empty()) {
-      fmt::print("{:<11} {}\n", name, *value);
+      fmt::print("{:<11} {}\n", name, in_one_line(*value));
     }
   }
 }
@@ -164,11 +172,11 @@ int info(const std::string& file) {
   for (const record::EventRow& event : reader.events()) {
     if (is_told(event.kind)) {
       fmt::print("{:<11} at {:.3f} s: {}\n", event.kind, 1e-9 * static_cast<double>(event.time_ns),
-                 event.text);
+                 in_one_line(event.text));
     }
   }
   for (const std::string& problem : integrity.problems) {
-    fmt::print("problem     {}\n", problem);
+    fmt::print("problem     {}\n", in_one_line(problem));
   }
   if (record::FileLock::taken(file)) {
     fmt::print("another haptrial is recording into this file\n");

@@ -12,6 +12,7 @@
 #include "core/base/counted.h"
 #include "core/base/error.h"
 #include "core/base/file_text.h"
+#include "core/base/whole_file.h"
 #include "experiments/command/arguments.h"
 #include "experiments/command/sessions/next_session.h"
 #include "experiments/command/subcommand.h"
@@ -34,7 +35,7 @@ void add_reason(const fs::path& file, const std::string& subject, const std::str
   exchange::RowText row(text, exchange::Delimited::kCsv);
   row.add(subject).add(reason);
   row.end();
-  write_text(file, text);
+  write_whole(file, text);
 }
 
 /// Takes a participant out of a study: moves all files of theirs that are no pilots into the folder
@@ -274,10 +275,9 @@ void write_new(const std::string& file, const std::string& text) {
   if (file.empty()) {
     return;
   }
-  if (fs::exists(file)) {
-    throw InputError(fmt::format("{}: exists already; give the name of a new file", file));
-  }
-  write_text(file, text);
+  WholeFile out(file);
+  out.write(text);
+  out.finish();
   fmt::print("roster: {}\n", file);
 }
 

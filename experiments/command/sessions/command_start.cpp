@@ -11,8 +11,11 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <limits>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -23,6 +26,8 @@
 #include "core/base/exception_words.h"
 #include "core/base/shell_word.h"
 #include "core/base/whole_file.h"
+#include "core/device/handle_part.h"
+#include "core/device/vendor_devices.h"
 #include "core/sound/card_player.h"
 #include "experiments/command/sessions/confirmation.h"
 #include "experiments/command/sessions/run_checks.h"
@@ -42,15 +47,51 @@ namespace fs = std::filesystem;
 using analysis::Document;
 using protocols::Definition;
 
-/// The greatest force that a session may command with this device [N].
-double greatest_force(const std::string& device, const Definition& d) {
-  double force = d.envelope.max_force;
-  for (const device::VendorDevice& vendor : device::vendor_devices()) {
-    if (vendor.name == device) {
-      force = std::min(force, vendor.limits(d.vendor).max_force);
+struct StartOptions : RunOptions {
+  bool check{false};
+  bool json{false};
+  std::string card;
+  std::string session_words;  // " --window": as they were given, without those of a participant
+};
+
+/// The most that a device gives with a part of its handle, as far as its driver's table says so, at
+/// the fingers [N].
+double driver_limit(const std::string& device, const protocols::DeviceArm& arm,
+                    const Definition& d) {
+  const device::VendorDevice* const vendor = device::vendor_device(device);
+  if (vendor == nullptr) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const device::VendorDevice::Limits limits = vendor->limits(d.vendor);
+  device::DeviceInfo info;
+  info.max_force = limits.max_force;
+  info.max_torque = limits.max_torque;
+  info.max_grip_force = limits.max_grip_force;
+  return device::most_force(arm.part, info, arm.radius);
+}
+
+bool is_tip(const protocols::DeviceArm& arm) { return arm.part == device::Part::kTip; }
+
+/// The greatest force that a session may command with each part of the handles, in its unit:
+/// "0.2 N·m (knob, rotation)".
+std::vector<std::string> greatest_forces(const RunOptions& options, const Definition& d) {
+  const std::vector<protocols::DeviceArm> arms = d.arms();
+  std::vector<std::string> forces;
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    const protocols::DeviceArm& arm = arms[i];
+    const std::size_t tip = is_tip(arm) ? i : arm.of;
+    const auto number = std::count_if(arms.begin(), arms.begin() + static_cast<long>(tip), is_tip);
+    const std::string& device =
+        options.devices[std::min(static_cast<std::size_t>(number), options.devices.size() - 1)];
+    const device::PartUnits unit = arm.units();
+    forces.push_back(fmt::format(
+        "{:g} {}", unit.newton * std::min(arm.limits.max_force, driver_limit(device, arm, d)),
+        unit.force));
+    if (!arm.name.empty()) {
+      forces.back() += fmt::format(" ({}, {})", arm.name, device::part_word(arm.part));
     }
   }
-  return force;
+  return forces;
 }
 
 std::vector<std::string> ways_to_stop(const RunOptions& options, const Definition& d,
@@ -99,21 +140,7 @@ void add_help(const protocols::Room& room, Document& page) {
               {"", "Switch the device on again only when nobody holds the handle."}});
 }
 
-/// The options of the session that matter when it goes on.
-std::string options_of_session(const RunOptions& options) {
-  std::string words;
-  for (const std::string& device : options.devices) {
-    words += " --device " + shell_word(device);
-  }
-  words += options.pilot ? " --pilot" : "";
-  words += options.window ? " --window" : "";
-  words += options.console ? " --console" : "";
-  words += options.keyboard ? " --keyboard" : "";
-  words += options.out.empty() ? "" : " --out " + shell_word(options.out);
-  return words;
-}
-
-void add_files(const RunOptions& options, const Definition& d, Document& page) {
+void add_files(const StartOptions& options, const Definition& d, Document& page) {
   const std::string backup = backup_folder(options, d);
   page.heading("Files, and how to go on");
   page.table(
@@ -123,21 +150,18 @@ void add_files(const RunOptions& options, const Definition& d, Document& page) {
        {"Backup", backup.empty() ? "none is made: copy the file by hand"
                                  : (fs::path(backup) / d.name / "ID.h5").string()},
        {"To go on", fmt::format("haptrial run {}{} --subject ID --resume",
-                                shell_word(options.definition), options_of_session(options))}});
+                                shell_word(options.definition), options.session_words)}});
 }
 
-Document card_of(const RunOptions& options, const Experiment& experiment, bool terminal) {
+Document card_of(const StartOptions& options, const Experiment& experiment, bool terminal) {
   const Definition& d = *experiment.definition;
   Document page;
   page.title = "Emergency card: " + d.name;
   page.subtitle = fmt::format("Device: {}. Made on {:%Y-%m-%d} by haptrial {}.",
                               fmt::join(options.devices, ", "), fmt::localtime(std::time(nullptr)),
                               program_version());
-  std::vector<std::string> forces;
-  for (const std::string& device : options.devices) {
-    forces.push_back(fmt::format("{:g} N", greatest_force(device, d)));
-  }
-  page.alarm(fmt::format("Greatest force on the hand: {}.", fmt::join(forces, " and ")));
+  page.alarm(fmt::format("Greatest force on the hand: {}.",
+                         fmt::join(greatest_forces(options, d), " and ")));
   page.heading("To stop the force at once");
   page.points(ways_to_stop(options, d, terminal));
   page.paragraph("Anybody may stop. The force stays zero until the experimenter clears the stop.");
@@ -151,7 +175,7 @@ Document card_of(const RunOptions& options, const Experiment& experiment, bool t
 /// nothing but the definition, the lab file and the options of the session.
 /// @param terminal  sessions have one whose keys they read; those that the studio starts have none
 /// @throws InputError if the file is there already; RunError if it cannot be written
-void write_emergency_card(const RunOptions& options, const Experiment& experiment, bool terminal,
+void write_emergency_card(const StartOptions& options, const Experiment& experiment, bool terminal,
                           const fs::path& file) {
   WholeFile out(file);
   out.write(analysis::to_html(card_of(options, experiment, terminal)));
@@ -159,12 +183,6 @@ void write_emergency_card(const RunOptions& options, const Experiment& experimen
 }
 
 using State = MachineCheck::State;
-
-struct StartOptions : RunOptions {
-  bool check{false};
-  bool json{false};
-  std::string card;
-};
 
 std::string lower_case(const char* word) {
   std::string text = word;
@@ -312,6 +330,26 @@ int start(const StartOptions& asked) {
   return 0;
 }
 
+/// The options that were given and hold for the session of whoever comes, so that no option of
+/// `run` can be forgotten where the session goes on.
+std::string session_words(const CLI::App& sub) {
+  const std::set<std::string> others{"--help",     "--subject", "--participant", "--handedness",
+                                     "--age-band", "--sex",     "--consent",     "--notes",
+                                     "--resume",   "--check",   "--json",        "--card"};
+  std::string words;
+  for (const CLI::Option* option : sub.get_options()) {
+    const std::string name = option->get_name();
+    if (option->count() == 0 || !option->nonpositional() || others.contains(name)) {
+      continue;
+    }
+    const bool flag = option->get_items_expected_max() == 0;
+    for (const std::string& value : option->results()) {
+      words += " " + name + (flag ? "" : " " + shell_word(value));
+    }
+  }
+  return words;
+}
+
 }  // namespace
 
 void add_start(CLI::App& app, int& status) {
@@ -319,7 +357,12 @@ void add_start(CLI::App& app, int& status) {
       app, "start", "Go through a checklist, then run the session of whoever comes next",
       "haptrial start first_experiment --check",
       {"what run writes; with --card a page (.html)", "guide-experimenter.md#before-each-session"});
-  auto& o = options_of<StartOptions>(*sub, status, start);
+  auto options = std::make_shared<StartOptions>();
+  run_when_read(*sub, status, [options, sub] {
+    options->session_words = session_words(*sub);
+    return start(*options);
+  });
+  StartOptions& o = *options;
   declare_run_options(*sub, o);
   sub->add_flag("--check", o.check,
                 "Print the checklist alone; exit status 0 if the session can begin, 1 if not");

@@ -17,6 +17,8 @@
 namespace haptrial::experiments {
 namespace {
 
+constexpr const char* kGamepad = "gamepad";
+
 constexpr double kReachShare = 0.4;  // of the workspace's radius, to each side
 
 /// A hand that is firm enough to try the workspace within a second.
@@ -97,8 +99,9 @@ DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup
   } else if (const device::RegisteredDevice* own = device::registered_device(options.name)) {
     bench.device = own->open(device::setting_of(options.name), 0, kDeviceTestRate);
   } else {
-    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name),
-                                 device::device_names()));
+    std::vector<std::string> tested = device::device_names();
+    std::erase(tested, kGamepad);
+    throw InputError(not_allowed("the device to test", fmt::format("'{}'", options.name), tested));
   }
   return bench;
 }
@@ -107,6 +110,11 @@ DeviceUnderTest vendor_bench(const DeviceTestOptions& options, const DeviceSetup
 
 DeviceUnderTest make_bench(const DeviceTestOptions& options, const DeviceSetup& setup) {
   check_library(options.name, options.library);
+  if (options.name == kGamepad) {
+    throw InputError(
+        "a game controller has neither test nor certificate; try it in a session with --device "
+        "gamepad");
+  }
   DeviceUnderTest bench = options.name == "virtual" ? virtual_bench(setup.electronics)
                           : options.name == "mouse" ? mouse_bench(setup.mouse)
                                                     : vendor_bench(options, setup);

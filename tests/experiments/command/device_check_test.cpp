@@ -193,6 +193,12 @@ TEST(DeviceTestCommandTest, WhatIsMissingIsNamed) {
   const test::CommandResult unknown = run_command("haptrial device-test falcon9");
   EXPECT_EQ(unknown.status, 2);
   EXPECT_THAT(unknown.errors, HasSubstr("the device to test is 'falcon9'; allowed: virtual"));
+  EXPECT_THAT(unknown.errors, testing::Not(HasSubstr("gamepad"))) << "it cannot be tested";
+  for (const char* line : {"gamepad", "gamepad --certificate out"}) {
+    const test::CommandResult pad = run_command(std::string("haptrial device-test ") + line);
+    EXPECT_EQ(pad.status, 2);
+    EXPECT_THAT(pad.errors, HasSubstr("a game controller has neither test nor certificate"));
+  }
   EXPECT_EQ(run_command("haptrial device-test virtual --seconds 0").status, 2);
 }
 
