@@ -1,6 +1,7 @@
 #include "experiments/studio/session_files.h"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -30,11 +31,27 @@ std::int64_t last_exclusion(const fs::path& folder) {
   return error ? 0 : milliseconds_of(changed);
 }
 
+/// When a file came to its place or was written, whichever is later: a copy that keeps the time of
+/// its original is new here all the same [ms].
+std::int64_t arrival_of(const fs::path& file, std::int64_t modified) {
+  struct stat entry {};
+  if (::stat(file.c_str(), &entry) != 0) {
+    return modified;
+  }
+  return std::max<std::int64_t>(
+      modified, 1000 * std::int64_t{entry.st_ctim.tv_sec} + entry.st_ctim.tv_nsec / 1'000'000);
+}
+
 }  // namespace
 
 const FolderFile* SessionFolder::newest_session() const {
-  const auto found = std::ranges::max_element(sessions, {}, &FolderFile::modified);
-  return found == sessions.end() ? nullptr : &*found;
+  const FolderFile* newest = nullptr;
+  for (const std::vector<FolderFile>* files : {&sessions, &unfinished}) {
+    for (const FolderFile& file : *files) {
+      newest = newest == nullptr || file.modified > newest->modified ? &file : newest;
+    }
+  }
+  return newest;
 }
 
 std::optional<std::string> media_type(const std::string& name) {
@@ -58,7 +75,7 @@ std::optional<std::string> media_type(const std::string& name) {
 SessionFolder list_sessions(const fs::path& folder) {
   SessionFolder out;
   std::error_code error;
-  std::int64_t report = 0;
+  std::int64_t report = 0, last_arrival = last_exclusion(folder);
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     std::error_code gone;
     const FolderFile file{entry.path().filename().string(), entry.file_size(gone),
@@ -68,17 +85,19 @@ SessionFolder list_sessions(const fs::path& folder) {
     }
     if (entry.path().extension() == ".h5") {
       out.sessions.push_back(file);
+      last_arrival = std::max(last_arrival, arrival_of(entry.path(), file.modified));
+    } else if (file.name.ends_with(".h5.partial")) {
+      out.unfinished.push_back(file);
     } else if (media_type(file.name)) {
       out.results.push_back(file);
     }
     report = file.name == "report.html" ? file.modified : report;
   }
   std::ranges::sort(out.sessions, {}, &FolderFile::name);
+  std::ranges::sort(out.unfinished, {}, &FolderFile::name);
   std::ranges::sort(out.results, {}, &FolderFile::name);
-  const FolderFile* newest = out.newest_session();
   out.report = report > 0;
-  out.report_is_old = out.report && std::max(newest != nullptr ? newest->modified : 0,
-                                             last_exclusion(folder)) > report;
+  out.report_is_old = out.report && last_arrival > report;
   return out;
 }
 

@@ -19,12 +19,13 @@ struct FolderFile {
 
 /// The files of a folder of sessions; none, if it is not there.
 struct SessionFolder {
-  std::vector<FolderFile> sessions;  // by name
-  std::vector<FolderFile> results;   // reports, figures and tables, by name
-  bool report{false};                // report.html is there
-  bool report_is_old{false};         // a session or an exclusion is newer than it
+  std::vector<FolderFile> sessions;    // finished ones, by name
+  std::vector<FolderFile> unfinished;  // sessions, by name
+  std::vector<FolderFile> results;     // reports, figures and tables, by name
+  bool report{false};                  // report.html is there
+  bool report_is_old{false};           // a session came, or an exclusion, since it was made
 
-  /// Null without sessions.
+  /// The session that was written last, finished or not; null without sessions.
   const FolderFile* newest_session() const;
 };
 

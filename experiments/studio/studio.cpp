@@ -75,12 +75,12 @@ SessionChoice choice_in(const json& body) {
   choice.subject = text_in(body, "subject");
   choice.session = body.contains("session") ? number_in(body, "session", 0, kMostSessions) : 0;
   const json devices = body.value("devices", json::array());
-  for (const json& device : devices) {
-    if (!device.is_string() || choice.devices.size() == kMostDevices) {
-      throw InputError(fmt::format("the body's \"devices\" are not up to {} names", kMostDevices));
-    }
-    choice.devices.push_back(device.get<std::string>());
+  const auto is_name = [](const json& device) { return device.is_string(); };
+  if (!devices.is_array() || devices.size() > kMostDevices ||
+      !std::ranges::all_of(devices, is_name)) {
+    throw InputError(fmt::format("the body's \"devices\" are not up to {} names", kMostDevices));
   }
+  choice.devices = devices.get<std::vector<std::string>>();
   choice.language = text_in(body, "language");
   choice.handedness = text_in(body, "handedness");
   choice.consent = text_in(body, "consent");
@@ -190,7 +190,7 @@ class Studio::Implementation {
              [this](const json& body) {
                return views_.set_key(string_in(body, "file"), string_in(body, "text"),
                                      string_in(body, "key"), string_in(body, "edit"),
-                                     body.value("value", std::string()));
+                                     text_in(body, "value"));
              }),
         post("/save",
              [this](const json& body) {

@@ -196,6 +196,7 @@ StampedText StudyFolder::read(const fs::path& file, std::uintmax_t most) const {
 std::string StudyFolder::save(const std::string& name, const std::string& text,
                               const std::string& stamp) const {
   const fs::path file = definition(name);
+  const std::lock_guard lock(saving_);  // from the comparison to the new text
   if (read(file, kMostText).stamp != stamp) {
     throw InputError(fmt::format(
         "{} was changed by another program since it was read here; nothing was saved", name));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,8 @@ class StudyFolder {
 
   /// @throws InputError for a file of more than `most` bytes.
   StampedText read(const std::filesystem::path& file, std::uintmax_t most) const;
-  /// Replaces a definition, whole or not at all. @returns its new stamp
+  /// Replaces a definition, whole or not at all; of those who save at once with one stamp, the
+  /// first does. @returns its new stamp
   /// @throws InputError if the file no longer has `stamp`.
   std::string save(const std::string& name, const std::string& text,
                    const std::string& stamp) const;
@@ -59,6 +61,7 @@ class StudyFolder {
   std::vector<std::string> folders_like(const std::string& definition, const char* pattern) const;
 
   std::filesystem::path root_;  // without symbolic links
+  mutable std::mutex saving_;
 };
 
 }  // namespace haptrial::experiments

@@ -88,8 +88,9 @@ json files_json(const std::vector<FolderFile>& files) {
 SessionFolder without_pilots(SessionFolder held, const json& study) {
   for (const json& person : study.value("/roster/participants"_json_pointer, json::array())) {
     for (const json& session : person["pilot"] == true ? person["sessions"] : json::array()) {
-      std::erase_if(held.sessions,
-                    [&](const FolderFile& file) { return session["file"] == file.name; });
+      for (std::vector<FolderFile>* files : {&held.sessions, &held.unfinished}) {
+        std::erase_if(*files, [&](const FolderFile& file) { return session["file"] == file.name; });
+      }
     }
   }
   return held;

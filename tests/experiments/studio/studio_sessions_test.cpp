@@ -97,6 +97,8 @@ TEST_F(StudioSessionsTest, IsEndedAndResumedAndEveryViewIsUpToDate) {
   const json unfinished = get("/study", "file=mine.toml")["roster"]["participants"];
   ASSERT_THAT(unfinished, SizeIs(1));
   EXPECT_EQ(unfinished[0]["sessions"][0]["state"], "unfinished");
+  EXPECT_EQ(get("/study", "file=mine.toml")["last_event"]["file"], "out/mine/P01.h5.partial");
+  EXPECT_EQ(get("/study", "file=mine.toml")["sessions"], 0) << "none is finished";
 
   test::ConsolePerson again(console_of(choice({{"subject", "P01"}, {"resume", true}})));
   ASSERT_TRUE(again.sees("instructions"));
@@ -138,7 +140,10 @@ TEST_F(StudioSessionsTest, WordsThatNoSessionHasAreRefused) {
       expect_refused(posting(path, choice({{key, value}})), 400, "allowed: ");
     }
   }
-  expect_refused(posting("/begin", choice({{"devices", {1}}})), 400, "are not up to 4 names");
+  for (const json& devices :
+       {json{1}, json("virtual"), json{{"a", "virtual"}}, json{"a", "b", "c", "d", "e"}}) {
+    expect_refused(posting("/begin", choice({{"devices", devices}})), 400, "are not up to 4 names");
+  }
   expect_refused(posting("/begin", choice({{"file", "../mine.toml"}})), 400, "within the folder");
   expect_refused(posting("/device_test", {{"device", "--certificate"}, {"seconds", 1}}), 400,
                  "the name of one");

@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/file_text.h"
@@ -232,6 +235,12 @@ TEST_F(StudioTest, AnEditOfTheFormIsOneOfTheTextAlone) {
                                   {"edit", "value"},
                                   {"value", "1\nx = 2"}}),
                  400, "one value");
+  expect_refused(posting("/set", {{"file", "mine.toml"},
+                                  {"text", before},
+                                  {"key", "design.participants"},
+                                  {"edit", "set"},
+                                  {"value", 5}}),
+                 400, "lacks the text \"value\"");
   expect_refused(posting("/keys", {{"file", "mine.toml"}, {"text", "a = \n"}}), 400, "mine.toml");
 }
 
@@ -417,6 +426,28 @@ TEST_F(StudioTest, SavesOnlyOverWhatWasRead) {
   expect_refused(reading("/text", "file=mine.toml"), 400, "not a text in UTF-8");
 }
 
+/// Each of two pages that save at once believes that nobody else has changed the text.
+TEST_F(StudioTest, TwoPagesThatSaveAtOnceAreNotBothToldThatTheirTextIsSaved) {
+  const std::string filling(500'000, '#');
+  for (int turn = 0; turn < 20; ++turn) {
+    const json stamp = get("/text", "file=mine.toml")["stamp"];
+    std::array<int, 2> states{};
+    std::vector<std::thread> pages;
+    for (std::size_t page = 0; page < states.size(); ++page) {
+      pages.emplace_back([&, page] {
+        const std::string own = "# " + std::to_string(2 * turn + static_cast<int>(page)) + "\n";
+        states[page] = status_of(exchange(
+            posting("/save", {{"file", "mine.toml"}, {"text", own + filling}, {"stamp", stamp}})));
+      });
+    }
+    for (std::thread& page : pages) {
+      page.join();
+    }
+    std::ranges::sort(states);
+    EXPECT_THAT(states, ElementsAre(200, 400));
+  }
+}
+
 TEST_F(StudioTest, ANewStudyComesFromTheGallery) {
   const json examples = get("/examples");
   EXPECT_EQ(examples["command"], "haptrial examples");
@@ -498,6 +529,23 @@ TEST_F(StudioTest, AReportFromBeforeAnExclusionIsOld) {
   EXPECT_EQ(get("/study", "file=mine.toml")["report"], "current");
   fs::rename(folder_ / "out/mine/excluded/S03.h5", folder_ / "out/mine/S03.h5");
   EXPECT_EQ(get("/study", "file=mine.toml")["report"], "old") << "a session came back";
+}
+
+/// A copy from another computer of the lab keeps the time of its original.
+TEST_F(StudioTest, AReportWithoutASessionThatWasCopiedHereIsOld) {
+  const std::string in_folder = "cd '" + folder_.path().string() + "' && haptrial ";
+  ASSERT_EQ(test::run_command(in_folder + "dry-run mine.toml --subjects 2 --out elsewhere && "
+                                          "mkdir -p out/mine && cp -p elsewhere/S01.h5 out/mine && "
+                                          "haptrial analyze out/mine")
+                .status,
+            0);
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "current");
+  ASSERT_EQ(
+      test::run_command("cd '" + folder_.path().string() + "' && cp -p elsewhere/S02.h5 out/mine")
+          .status,
+      0);
+  EXPECT_EQ(get("/study", "file=mine.toml")["report"], "old");
+  EXPECT_TRUE(get("/sessions", "file=mine.toml")["folders"][0]["report_is_old"]);
 }
 
 TEST_F(StudioTest, APowerAnalysisIsAJob) {
