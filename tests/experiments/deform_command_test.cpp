@@ -16,6 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kBar = R"([body]
 block = [0.02, 0.02, 0.04]
@@ -310,6 +311,20 @@ TEST_F(DeformCommandTest, OptionsThatDoNothingAreRefused) {
           "--samples is 50; allowed: up to --evaluations, 20");
   EXPECT_FALSE(fs::exists(folder_ / "bad.evaluations"));
   refused("simulate bar.toml --model elements --springs 1 1 1", "elements have none");
+  refused("reference bar.toml --seconds 2", "--seconds is for --model dynamic or --motion");
+  refused("reference bar.toml --damping 5", "--damping is for --model dynamic or --motion");
+  refused("reference bar.toml --step 0.01", "--step is for --model dynamic");
+  refused("reference bar.toml --motion --step 0.01", "--step is for --model dynamic");
+  refused("skin bar.toml skin.obj pull.csv --format off", "allowed: .obj, .ply, .stl");
+  EXPECT_THAT(run("haptrial deform skin --help").output, Not(HasSubstr("off")));
+  const auto info_refuses = [&](const std::string& options, const std::string& sentence) {
+    const auto result = run("haptrial deform info " + options);
+    EXPECT_EQ(result.status, 2) << options;
+    EXPECT_THAT(result.errors, HasSubstr(sentence)) << options;
+  };
+  info_refuses("bar.toml --scale 0.5", "--scale is for a mesh; bar.toml says it itself, in [body]");
+  info_refuses("bar.toml --resolution 77", "--resolution is for a mesh");
+  info_refuses("bar.node --resolution 77", "--resolution is for a surface");
   EXPECT_THAT(run("haptrial deform info bar.toml --springs 0 0 0").errors, HasSubstr("all 0"));
   EXPECT_THAT(run("haptrial deform info bar.xyz").errors, HasSubstr("allowed: .toml, .obj"));
 }

@@ -148,6 +148,11 @@ TEST_F(EvaluateCommandTest, ForcesOfAnotherProgramAreJudged) {
   EXPECT_NEAR(json["other_programs"][0]["force_error"]["root_mean_square_N"].get<double>(),
               kFriction * std::sqrt(1.0 + 0.5 * 0.4 * 0.4), 0.01);
   EXPECT_THAT(test::read_text(folder_ / "judged/report.html"), HasSubstr(">mine<"));
+  for (const std::string name : {"force", "proxy"}) {
+    const auto twice = run("cp mine.csv " + name + ".csv; " + line + "--rendered " + name + ".csv");
+    EXPECT_EQ(twice.status, 2) << name;
+    EXPECT_THAT(twice.errors, HasSubstr("contact.csv has forces called " + name + ", too"));
+  }
   const auto few = run("head -5 mine.csv > few.csv; " + line + "--rendered few.csv");
   EXPECT_EQ(few.status, 2);
   EXPECT_THAT(few.errors, HasSubstr("few.csv: few has 4 forces; allowed: "));
@@ -300,6 +305,52 @@ TEST_F(EvaluateCommandTest, ASessionIsARecordingOfItsContacts) {
   };
   refused("--object other", "--object is 'other'; contacts are recorded with: ball");
   refused("--trial 2", "--trial is 2; the object was touched in the trials 1");
+}
+
+/// The study with another line below that of the ball's mesh, and with more at its end.
+std::string ball_study_with(const std::string& line, const std::string& more = "") {
+  std::string text = std::string(kBallStudy) + more;
+  const std::string mesh = "mesh = \"ball.obj\"\n";
+  return text.insert(text.find(mesh) + mesh.size(), line);
+}
+
+TEST_F(EvaluateCommandTest, TheToolOfASessionIsAsLargeAsItsDefinitionSays) {
+  test::write_text(folder_ / "ball.toml", ball_study_with("tool_radius = 0.005\n"));
+  ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.5").status, 0);
+  ASSERT_EQ(run("haptrial dry-run ball.toml --out study").status, 0);
+  const std::string line =
+      "haptrial evaluate study/S01.h5 --mesh ball.obj --renderer proxy --stiffness 600 "
+      "--friction 0.2 --out ";
+  for (const char* out : {"own", "five --radius 5", "point --radius 0"}) {
+    const auto result = run(line + out);
+    ASSERT_EQ(result.status, 0) << result.errors;
+  }
+  const auto error = [&](const char* folder) {
+    return numbers(folder)["renderings"][1]["force_error"]["root_mean_square_N"].get<double>();
+  };
+  EXPECT_EQ(error("own"), error("five"));
+  EXPECT_LT(error("own"), 0.5 * error("point"));
+}
+
+TEST_F(EvaluateCommandTest, AnObjectIsFeltByADeviceThatIsNotTheFirst) {
+  test::write_text(folder_ / "ball.toml",
+                   ball_study_with("device = \"right\"\n",
+                                   "[devices.left]\nstart = [-0.06, 0.0, 0.0]\n"
+                                   "[devices.right]\nstart = [0.0, 0.0, 0.0]\n"));
+  std::string text = test::read_text(folder_ / "ball.toml");
+  const std::string action = "explore = { do";
+  test::write_text(folder_ / "ball.toml",
+                   text.replace(text.find(action), action.size(), "explore.right = { do"));
+  ASSERT_EQ(run("haptrial mesh repair body.obj ball.obj --scale 0.5").status, 0);
+  const auto rehearsed = run("haptrial dry-run ball.toml --out study");
+  ASSERT_EQ(rehearsed.status, 0) << rehearsed.errors;
+  const auto result =
+      run("haptrial evaluate study/S01.h5 --mesh ball.obj --renderer proxy --stiffness 600 "
+          "--friction 0.2 --out out");
+  ASSERT_EQ(result.status, 0) << result.errors;
+  const auto json = numbers("out");
+  EXPECT_EQ(json["recording"], "S01.h5, ball in trial 1");
+  EXPECT_NEAR(json["identified"]["stiffness_N_per_m"]["value"].get<double>(), 600.0, 3.0);
 }
 
 /// The file keeps the checksum of the mesh: the same recording is no recording of another body.

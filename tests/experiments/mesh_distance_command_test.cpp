@@ -56,6 +56,16 @@ TEST_F(MeshDistanceCommandTest, LeavesTheOutsideAloneUnlessAsked) {
   EXPECT_TRUE(exists("gear.nrrd"));
 }
 
+TEST_F(MeshDistanceCommandTest, SaysThatNothingIsInside) {
+  const auto result =
+      run("haptrial mesh make sphere both.obj\n"
+          "awk '/^f/ { print \"f\", $2, $4, $3 }' both.obj > other.obj; cat other.obj >> both.obj\n"
+          "haptrial mesh distance both.obj both.nrrd --resolution 10 --everywhere");
+  EXPECT_EQ(result.status, 0) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("WARNING: no voxel is inside"));
+  EXPECT_THAT(result.output, HasSubstr("deepest 0 m"));
+}
+
 TEST_F(MeshDistanceCommandTest, RefusesBeforeItWrites) {
   run("haptrial mesh make gear gear.ply; touch there.nrrd");
   const auto expect_refused = [&](const std::string& arguments, const std::string& sentence) {

@@ -9,6 +9,7 @@
 
 #include "analysis/document/palette.h"
 #include "analysis/files/csv.h"
+#include "analysis/files/delimited.h"
 #include "core/base/error.h"
 #include "core/contact/renderer_kinds.h"
 
@@ -162,8 +163,10 @@ std::string failure_csv(const std::vector<FailureMap>& maps) {
     return x ? fmt::format("{:.3f}", 1e3 * *x) : std::string();
   };
   for (const FailureMap& map : maps) {
+    std::string renderer;
+    exchange::RowText(renderer, exchange::Delimited::kCsv).add(map.renderer);
     for (const FailureMap::Cell& cell : map.cells) {
-      fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n", map.renderer,
+      fmt::format_to(std::back_inserter(text), "{},{},{},{:.0f},{},{},{},{},{:.3f}\n", renderer,
                      map.friction, 1e3 * map.radius, cell.flank / kDegree, 1e3 * cell.depth,
                      name_of(cell.result.outcome), number(cell.result.left_foot),
                      number(cell.law.seen()), 1e3 * cell.result.highest);

@@ -14,7 +14,7 @@ constexpr double kTooSmall = 0.005;
 }  // namespace
 
 void check_body(const contact::FeltBody& body) {
-  if (body.facing != geometry::Facing::kOutwards) {
+  if (body.facing == geometry::Facing::kInwards || body.facing == geometry::Facing::kMixed) {
     throw std::invalid_argument(
         fmt::format("{} look inwards; turn them with haptrial mesh repair MESH NEW_MESH",
                     body.facing == geometry::Facing::kInwards ? "its faces" : "some of its faces"));

@@ -28,16 +28,36 @@ std::string of(const char* unit, const Interval& i) {
 }
 
 /// A coefficient of friction, or the other one where the recording does not tell it.
-std::string friction_line(const char* key, const Interval* own, const Interval& other) {
-  const Interval& i = own != nullptr ? *own : other;
-  return fmt::format("{} = {:.4g}  # {}\n", key, std::max(0.0, i.value),
-                     own != nullptr ? fmt::format("95 %: {}", of("", i))
-                                    : "the other one's; this one is not known from the recording");
+/// @param least  below which a definition refuses it
+std::string friction_line(const char* key, const Interval* own, const Interval& other,
+                          double least) {
+  const double value = std::max(least, (own != nullptr ? *own : other).value);
+  std::string words = "the other one's; this one is not known from the recording";
+  if (own != nullptr) {
+    words = fmt::format("95 %: {}", of("", *own));
+    if (own->value < least) {
+      words = fmt::format("found as {:.4g} ({}); a definition allows no less than {:.4g}",
+                          own->value, words, least);
+    }
+  }
+  return fmt::format("{} = {:.4g}  # {}\n", key, value, words);
 }
 
 const Interval* address(const std::optional<Interval>& i) { return i ? &*i : nullptr; }
 
 }  // namespace
+
+std::vector<std::string> force_names(const Evaluation& evaluation) {
+  std::vector<std::string> names{"force"};
+  for (const EvaluatedRendering& rendering : evaluation.renderings) {
+    names.push_back(name_of(rendering));
+    std::ranges::replace(names.back(), ' ', '-');
+  }
+  for (const OtherRendering& other : evaluation.others) {
+    names.push_back(other.name);
+  }
+  return names;
+}
 
 std::string contact_csv(const Evaluation& evaluation) {
   const PreparedContact& c = evaluation.contact;
@@ -46,14 +66,8 @@ std::string contact_csv(const Evaluation& evaluation) {
   header.add("time_s").add("touching");
   add_names(header, "out", "m");
   add_names(header, "in", "m");
-  add_names(header, "force", "N");
-  for (const EvaluatedRendering& rendering : evaluation.renderings) {
-    std::string name = name_of(rendering);
-    std::ranges::replace(name, ' ', '-');
+  for (const std::string& name : force_names(evaluation)) {
     add_names(header, name, "N");
-  }
-  for (const OtherRendering& other : evaluation.others) {
-    add_names(header, other.name, "N");
   }
   header.end();
   for (std::size_t i = 0; i < c.time.size(); ++i) {
@@ -75,7 +89,8 @@ std::string contact_csv(const Evaluation& evaluation) {
 std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& names) {
   std::string text = fmt::format(
       "# {}{} on {}, as haptrial evaluate found it; intervals hold 95 %.\n[objects.recorded]\n"
-      "mesh = {}  # put it beside the definition\nscale = {:g}\n",
+      "mesh = {}  # put it beside the definition\nscale = {:g}\n"
+      "damping = 0.0  # an object needs one [N·s/m]; the recording is not asked for it\n",
       names.simulated ? "SIMULATED: " : "", names.recording, names.mesh, toml_text(names.mesh),
       names.mesh_unit);
   if (!evaluation.identified) {
@@ -100,8 +115,10 @@ std::string objects_toml(const Evaluation& evaluation, const EvaluationNames& na
     return text + "# friction: not known from the recording\n";
   }
   text += "\n[objects.recorded.friction]\n";
-  text += friction_line("static", resting, moving != nullptr ? *moving : *resting);
-  text += friction_line("dynamic", moving, resting != nullptr ? *resting : *moving);
+  // A body at rest is held by no less than one that slides, whatever noise makes of equal ones.
+  const double least = moving != nullptr ? std::max(0.0, moving->value) : 0.0;
+  text += friction_line("static", resting, moving != nullptr ? *moving : *resting, least);
+  text += friction_line("dynamic", moving, resting != nullptr ? *resting : *moving, 0.0);
   return text;
 }
 

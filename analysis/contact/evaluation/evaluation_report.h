@@ -19,6 +19,10 @@ struct EvaluationNames {
 /// A line of text for each fact, for a terminal: no line end.
 std::vector<std::string> evaluation_lines(const Evaluation& evaluation);
 
+/// Names of the forces in contact_csv(), in its order: the recorded one, those of renderings and of
+/// other programs.
+std::vector<std::string> force_names(const Evaluation& evaluation);
+
 /// A table of the contact, a row for each tick: out- and in-trajectory in the mesh's frame [m], the
 /// recorded force on the probe [N] and that of every rendering.
 std::string contact_csv(const Evaluation& evaluation);

@@ -28,6 +28,7 @@ constexpr double kSameLag = 2e-4;      // [s]
 constexpr double kMuchFriction = 0.6;  // rare between dry solids
 constexpr double kInwards = 0.2;       // share of contacts pulled inwards that is doubted
 constexpr double kOffBody = 0.05;      // of a size: a median distance that is doubted
+constexpr double kFarFromBody = 10.0;  // of the path's size: likewise, however large the body
 
 void check_options(const PrepareOptions& o) {
   require(o.rate >= 10.0 && o.rate <= 1e5, "rate: allowed: 10 to 100000 Hz");
@@ -351,7 +352,8 @@ void judge_places(const Touch& touch, const contact::FeltBody& body, PreparedCon
     }
   }
   const double median = *analysis::quantile(distance, 0.5);
-  if (median > kOffBody * body.size) {  // a press at one place of the body is small, but on it
+  // A press at one place of the body is small, but on it.
+  if (median > std::min(kOffBody * body.size, kFarFromBody * path_size(contacts))) {
     check_size(body, contacts);
   }
   remark_on_distance(median, contacts, result);

@@ -13,6 +13,7 @@
 #include "analysis/document/finding.h"
 #include "analysis/document/finding_json_internal.h"
 #include "analysis/files/new_folder.h"
+#include "core/base/error.h"
 #include "core/base/file_text.h"
 
 namespace haptrial::evaluation {
@@ -98,6 +99,24 @@ std::string file_name(std::string renderer) {
     c = std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
   }
   return renderer;
+}
+
+/// Answers are told apart by the name that files and findings have, so that a second renderer of
+/// one name would take the place of the first.
+void check_names(const std::vector<ExamScore>& scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::string& first = scores[j].answers.renderer;
+      const std::string& second = scores[i].answers.renderer;
+      if (file_name(first) == file_name(second)) {
+        throw InputError(
+            fmt::format("the renderers '{}' and '{}' would both be written as {}; allowed: names "
+                        "that differ in letters or digits (renderer in answers.json, which exam "
+                        "run --name sets)",
+                        first, second, file_name(first)));
+      }
+    }
+  }
 }
 
 FindingList findings_of(const ExamScore& score, const std::vector<ExamCase>& exam) {
@@ -263,6 +282,7 @@ std::vector<std::string> score_lines(const std::vector<ExamScore>& scores) {
 
 void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCase>& exam,
                   const std::filesystem::path& folder) {
+  check_names(scores);
   exchange::NewFolder out(folder);
   std::vector<FindingList> lists;
   std::vector<FindingTable> tables;

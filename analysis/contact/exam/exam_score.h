@@ -62,7 +62,8 @@ std::vector<std::string> score_lines(const std::vector<ExamScore>& scores);
 
 /// Writes scores.csv, scores.json, a map of failures for each renderer that has one, and
 /// report.html. All but the costs is the same on every computer.
-/// @throws InputError when `folder` holds anything or cannot be made; RunError as draw_figures().
+/// @throws InputError when two renderers have one name but for marks and spaces, or `folder` holds
+/// anything or cannot be made; RunError as draw_figures().
 void write_scores(const std::vector<ExamScore>& scores, const std::vector<ExamCase>& exam,
                   const std::filesystem::path& folder);
 

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/record/read/session_reader.h"
 #include "core/record/read/tick_rows.h"
+#include "core/record/rows/device_rows.h"
 #include "core/record/rows/object_rows.h"
 
 namespace haptrial::evaluation {
@@ -21,15 +22,24 @@ using record::PassRow;
 constexpr double kAir = 0.5;  // before the first and after the last contact [s]
 constexpr double kNanoseconds = 1e-9;
 
+Table definition_of(const record::SessionReader& session) {
+  return Table::parse(session.info().definition, session.info().definition_name);
+}
+
 /// The objects of the definition in the order of their names, as /contacts numbers them.
 std::vector<std::string> objects_of(const record::SessionReader& session) {
-  Table root = Table::parse(session.info().definition, session.info().definition_name);
+  Table root = definition_of(session);
   return root.has("objects") ? root.table("objects").keys() : std::vector<std::string>();
+}
+
+/// The radius of the ball by which an object is felt [m].
+double tool_radius_of(const record::SessionReader& session, const std::string& object) {
+  return definition_of(session).table("objects").table(object).number_or("tool_radius", 0.0,
+                                                                         {0.0, 0.05}, "m");
 }
 
 std::vector<ContactRow> contacts_of(const record::SessionReader& session) {
   std::vector<ContactRow> contacts = session.rows<ContactRow>();
-  std::erase_if(contacts, [](const ContactRow& row) { return row.device != 0; });
   if (contacts.empty()) {
     throw InputError(
         fmt::format("{}: no contact is recorded; an object's contacts are if it says record = true",
@@ -88,6 +98,29 @@ PassRow choose_trial(const record::SessionReader& session, const SessionChoice& 
   return *chosen;
 }
 
+/// Samples of ticks with the places of a device's tool.
+std::vector<record::Sample> samples_of(const record::SessionReader& session, int device,
+                                       std::uint64_t first, std::uint64_t count) {
+  std::vector<record::Sample> samples =
+      record::rows_of_ticks(session, record::samples_table(), first, count);
+  if (device == 0) {
+    return samples;
+  }
+  std::vector<record::Sample> result;
+  auto sample = samples.begin();
+  for (const record::DeviceRow& row :
+       record::rows_of_ticks(session, record::table_of<record::DeviceRow>(), first, count)) {
+    while (sample != samples.end() && sample->sequence < row.sequence) {
+      ++sample;  // its row of the device is missing
+    }
+    if (row.device == device && sample != samples.end() && sample->sequence == row.sequence) {
+      result.push_back(*sample);
+      result.back().position = row.position;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 SessionContact read_session_contact(const record::SessionReader& session,
@@ -98,13 +131,15 @@ SessionContact read_session_contact(const record::SessionReader& session,
   const PassRow pass = choose_trial(session, choice, contacts);
   result.trial = pass.trial;
   result.simulated = session.info().simulated;
+  result.tool_radius = tool_radius_of(session, result.object);
+  const int device = contacts.front().device;
+  std::erase_if(contacts, [&](const ContactRow& row) { return row.device != device; });
 
   const auto air = static_cast<std::uint64_t>(kAir * session.info().rate);
   const std::uint64_t begin = contacts.front().sequence, end = contacts.back().sequence;
   const std::uint64_t first = std::max(pass.first_sample, begin - std::min(begin, air));
   const std::uint64_t last = std::min(pass.last_sample, end + air);
-  const std::vector<record::Sample> samples =
-      record::rows_of_ticks(session, record::samples_table(), first, last - first + 1);
+  const std::vector<record::Sample> samples = samples_of(session, device, first, last - first + 1);
   auto contact = contacts.begin();
   for (const record::Sample& sample : samples) {
     while (contact != contacts.end() && contact->sequence < sample.sequence) {

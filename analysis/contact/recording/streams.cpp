@@ -83,6 +83,50 @@ class BrokenLine {
   std::vector<Eigen::Vector3d> sum_;
 };
 
+/// The usual time between changes; 0 where there are none. @param changes  rows, the first is one
+double usual_hold(const std::vector<double>& time, const std::vector<std::size_t>& changes) {
+  std::vector<double> holds;
+  for (std::size_t c = 1; c < changes.size(); ++c) {
+    holds.push_back(time[changes[c]] - time[changes[c - 1]]);
+  }
+  if (holds.empty()) {
+    return 0.0;
+  }
+  const auto middle = holds.begin() + static_cast<std::ptrdiff_t>(holds.size() / 2);
+  std::nth_element(holds.begin(), middle, holds.end());
+  return *middle;
+}
+
+/// The rows at which a stream changed, and where it stayed the same, the end of that: a line drawn
+/// from its beginning to the next change would leave the value that was held.
+/// @param repeats  whether a row says the same as the one before it
+template <class Repeats>
+std::vector<std::size_t> rows_of_changes(const std::vector<double>& time, const Repeats& repeats) {
+  constexpr double kLong = 3.0;    // usual holds from which on a value was read again and again
+  constexpr double kBefore = 0.5;  // usual holds before the next change
+  std::vector<std::size_t> changes;
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    if (i == 0 || !repeats(i)) {
+      changes.push_back(i);
+    }
+  }
+  const double usual = usual_hold(time, changes);
+  std::vector<std::size_t> rows;
+  for (std::size_t c = 0; c < changes.size(); ++c) {
+    rows.push_back(changes[c]);
+    const bool at_end = c + 1 == changes.size();
+    std::size_t last = (at_end ? time.size() : changes[c + 1]) - 1;
+    const double until = at_end ? time[last] : time[changes[c + 1]] - kBefore * usual;
+    while (time[last] > until && last > changes[c]) {
+      --last;
+    }
+    if (usual > 0.0 && time[last] - time[changes[c]] > kLong * usual) {
+      rows.push_back(last);
+    }
+  }
+  return rows;
+}
+
 }  // namespace
 
 void check(const PoseStream& pose) {
@@ -109,13 +153,14 @@ void check(const ForceStream& force) {
 
 PoseStream changes(const PoseStream& pose) {
   PoseStream result;
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    if (i == 0 || pose.position[i] != pose.position[i - 1] ||
-        pose.orientation[i].coeffs() != pose.orientation[i - 1].coeffs()) {
-      result.time.push_back(pose.time[i]);
-      result.position.push_back(pose.position[i]);
-      result.orientation.push_back(pose.orientation[i]);
-    }
+  const auto repeats = [&](std::size_t i) {
+    return pose.position[i] == pose.position[i - 1] &&
+           pose.orientation[i].coeffs() == pose.orientation[i - 1].coeffs();
+  };
+  for (const std::size_t row : rows_of_changes(pose.time, repeats)) {
+    result.time.push_back(pose.time[row]);
+    result.position.push_back(pose.position[row]);
+    result.orientation.push_back(pose.orientation[row]);
   }
   return result;
 }
@@ -123,14 +168,15 @@ PoseStream changes(const PoseStream& pose) {
 ForceStream changes(const ForceStream& force) {
   ForceStream result;
   const bool torque = !force.torque.empty();
-  for (std::size_t i = 0; i < force.size(); ++i) {
-    if (i == 0 || force.force[i] != force.force[i - 1] ||
-        (torque && force.torque[i] != force.torque[i - 1])) {
-      result.time.push_back(force.time[i]);
-      result.force.push_back(force.force[i]);
-      if (torque) {
-        result.torque.push_back(force.torque[i]);
-      }
+  const auto repeats = [&](std::size_t i) {
+    return force.force[i] == force.force[i - 1] &&
+           (!torque || force.torque[i] == force.torque[i - 1]);
+  };
+  for (const std::size_t row : rows_of_changes(force.time, repeats)) {
+    result.time.push_back(force.time[row]);
+    result.force.push_back(force.force[row]);
+    if (torque) {
+      result.torque.push_back(force.torque[row]);
     }
   }
   return result;

@@ -39,7 +39,9 @@ void check(const PoseStream& pose);
 void check(const ForceStream& force);
 
 /// The samples at which the pose changed (the first is one): recordings with a row for every event
-/// repeat the last known pose.
+/// repeat the last known pose. If a pose stays for more than three times the median time between
+/// changes it was read again, and the last sample that says so is kept as well: at the stream's
+/// end, or half that time before the next change.
 PoseStream changes(const PoseStream& pose);
 /// The same for force and torque.
 ForceStream changes(const ForceStream& force);

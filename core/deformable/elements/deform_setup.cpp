@@ -258,6 +258,11 @@ DeformSetup read_setup(const std::filesystem::path& file) {
 }
 
 Elasticity elasticity_of(const DeformSetup& setup, const geometry::TetMesh& body) {
+  constexpr std::size_t kMost = 256;  // different numbers in material_of
+  if (setup.materials.size() > kMost) {
+    throw InputError(fmt::format("{}: the body has {} materials; allowed: at most {}",
+                                 setup.file.string(), setup.materials.size(), kMost));
+  }
   Elasticity elasticity{{}, {}, setup.law, setup.volume};
   for (const NamedMaterial& named : setup.materials) {
     check_material(named.material, fmt::format("material '{}'", named.name));
@@ -309,7 +314,10 @@ LoadCase load_case_of(const DeformSetup& setup, const SetupLoad& load,
   std::map<std::int32_t, Vector3d> moved;
   for (const RegionMove& move : load.moved) {
     for (const std::int32_t v : in(move.region)) {
-      moved[v] = move.by;
+      if (const auto [at, fresh] = moved.emplace(v, move.by); !fresh && at->second != move.by) {
+        throw InputError(fmt::format(
+            "load '{}': vertex {} is in two regions that are moved differently", load.name, v));
+      }
     }
   }
   add_holds(load, moved, still, result);

@@ -78,11 +78,13 @@ struct DeformSetup {
 DeformSetup read_setup(const std::filesystem::path& file);
 
 /// The material of each tetrahedron, and the materials.
-/// @throws InputError as check_material(), and for a region that has no tetrahedron.
+/// A tetrahedron in the regions of several materials has the last of these.
+/// @throws InputError as check_material(), for a region that has no tetrahedron and for more than
+/// 256 materials.
 Elasticity elasticity_of(const DeformSetup& setup, const geometry::TetMesh& body);
 
-/// @throws InputError naming the load and the region for what is on no vertex or no outer face, and
-/// as check_load().
+/// @throws InputError naming the load and the region for what is on no vertex or no outer face, for
+/// a vertex in two regions that are moved differently, and as check_load().
 LoadCase load_case_of(const DeformSetup& setup, const SetupLoad& load,
                       const geometry::TetMesh& body);
 

@@ -35,7 +35,10 @@ void FaceCutter::project(const std::vector<Eigen::Vector3d>& vertices,
     largest = std::max(largest, here.cwiseAbs().maxCoeff());
     extent = std::max(extent, (here - first).cwiseAbs().maxCoeff());
   }
-  rounding_ = 1e-6 * largest * extent;
+  // Far from the origin a millionth of the coordinates may be as large as the face itself.
+  constexpr double kMost = 1e-3;  // of the face's extent
+  most_rounding_ = 1e-6 * largest * extent;
+  rounding_ = std::min(most_rounding_, kMost * extent * extent);
   int axis = 0;
   if (normal.cwiseAbs().maxCoeff(&axis) <= rounding_) {
     covered.maxCoeff(&axis);  // the loops of a face that crosses itself may cancel
@@ -50,7 +53,7 @@ void FaceCutter::project(const std::vector<Eigen::Vector3d>& vertices,
   }
 }
 
-bool FaceCutter::fan_fits() const {
+bool FaceCutter::fan_fits(double rounding) const {
   double folded = 0.0;
   double angle = 0.0;
   for (std::size_t i = 2; i < points_.size(); ++i) {
@@ -58,7 +61,7 @@ bool FaceCutter::fan_fits() const {
     folded -= std::min(area, 0.0);
     angle += std::atan2(2.0 * area, (points_[i - 1] - points_[0]).dot(points_[i] - points_[0]));
   }
-  return folded <= rounding_ && angle <= 2.0 * std::numbers::pi + 1e-6;
+  return folded <= rounding && angle <= 2.0 * std::numbers::pi + 1e-6;
 }
 
 bool FaceCutter::is_ear(std::size_t corner) const {
@@ -115,17 +118,19 @@ bool FaceCutter::clip_ears(std::span<const std::int32_t> corners, std::span<Tria
 const char* FaceCutter::cut(const std::vector<Eigen::Vector3d>& vertices,
                             std::span<const std::int32_t> corners, std::span<Triangle> triangles) {
   project(vertices, corners);
-  if (fan_fits()) {
-    for (std::size_t i = 2; i < corners.size(); ++i) {
-      triangles[i - 2] = {corners[0], corners[i - 1], corners[i]};
-    }
+  const bool fan = fan_fits(rounding_);
+  const bool too_many = corners.size() > kMostConcaveCorners;
+  if (!fan && !too_many && clip_ears(corners, triangles)) {
     return "";
   }
-  if (corners.size() > kMostConcaveCorners) {
-    return "has a concave corner; allowed with more than 10,000 corners: convex faces";
+  if (!fan && !fan_fits(most_rounding_)) {
+    return too_many ? "has a concave corner; allowed with more than 10,000 corners: convex faces"
+                    : "crosses itself; allowed: faces whose edges do not cross";
   }
-  return clip_ears(corners, triangles) ? ""
-                                       : "crosses itself; allowed: faces whose edges do not cross";
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    triangles[i - 2] = {corners[0], corners[i - 1], corners[i]};
+  }
+  return "";
 }
 
 }  // namespace haptrial::geometry::reading

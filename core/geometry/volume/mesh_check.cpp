@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/geometry/mesh/mesh_edges.h"
 #include "core/geometry/mesh/mesh_size.h"
@@ -159,11 +160,23 @@ const char* words_of(Facing facing) {
       return ", faces look outwards";
     case Facing::kInwards:
       return ", faces look inwards";
+    case Facing::kNeither:
+      return ", each face has one that looks the other way, so that nothing is inside";
     case Facing::kMixed:
       break;
   }
   return ", faces of some parts look inwards and of others outwards, so that the volume is a "
          "difference";
+}
+
+/// The side of an open surface that counts as its inside, where it is not flat.
+const char* open_words(const MeshReport& r) {
+  constexpr double kFlat = 1e-9;
+  if (!r.oriented() || std::abs(r.volume) <= kFlat * r.area * r.box.diagonal().norm()) {
+    return "";
+  }
+  return r.volume > 0.0 ? ", faces look outwards from its middle"
+                        : ", faces look inwards to its middle";
 }
 
 std::string surface_sentence(const MeshReport& r) {
@@ -180,8 +193,9 @@ std::string surface_sentence(const MeshReport& r) {
         "number, as where a face is there twice or a wall stands inside",
         counted(r.odd_edges, "edge", "edges"));
   }
-  return fmt::format("open: {} in {}", counted(r.boundary_edges, "boundary edge", "boundary edges"),
-                     counted(r.boundary_loops, "loop", "loops"));
+  return fmt::format("open: {} in {}{}",
+                     counted(r.boundary_edges, "boundary edge", "boundary edges"),
+                     counted(r.boundary_loops, "loop", "loops"), open_words(r));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ struct MeshReport {
   std::optional<std::size_t> genus;  // handles of all components; none where edges are not manifold
 
   double area{0.0};                  // [m²]
-  double volume{0.0};                // [m³]; negative where faces look inwards; of closed meshes
+  double volume{0.0};                // signed_volume() [m³]; negative where faces look inwards
   Facing facing{Facing::kOutwards};  // of closed, oriented meshes
   Eigen::AlignedBox3d box;
 

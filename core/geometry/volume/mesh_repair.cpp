@@ -159,16 +159,21 @@ struct Component {
   Eigen::AlignedBox3d box;
 };
 
+/// Six times the volume; 0 where its parts cancel but for rounding.
 double volume_of(const Mesh& mesh, const Component& part) {
+  constexpr double kRounding = 1e-12;  // of the parts in sum
   const Eigen::Vector3d middle = part.box.center();
   double sixfold = 0.0;
+  double sizes = 0.0;
   for (const std::uint32_t t : part.triangles) {
     const Triangle& corners = mesh.triangles[t];
     const Eigen::Vector3d a = mesh.vertices[corners[0]] - middle;
     const Eigen::Vector3d b = mesh.vertices[corners[1]] - middle;
-    sixfold += a.dot(b.cross(mesh.vertices[corners[2]] - middle));
+    const double part_of_it = a.dot(b.cross(mesh.vertices[corners[2]] - middle));
+    sixfold += part_of_it;
+    sizes += std::abs(part_of_it);
   }
-  return sixfold;
+  return std::abs(sixfold) > kRounding * sizes ? sixfold : 0.0;
 }
 
 std::vector<Component> components_of(const Mesh& mesh, const EdgeTable& edges,
@@ -344,15 +349,21 @@ Facing facing(const Mesh& mesh) {
   if (parts.size() > 1) {
     hierarchy.emplace(mesh);
   }
-  std::size_t outer = 0;
-  std::size_t inwards = 0;
+  bool outwards = false;
+  bool inwards = false;
+  bool neither = false;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (parts[p].closed && !(hierarchy && is_cavity(mesh, *hierarchy, turned, parts, p))) {
-      ++outer;
-      inwards += volume_of(mesh, parts[p]) < 0.0 ? 1 : 0;
+      const double volume = volume_of(mesh, parts[p]);
+      outwards = outwards || volume > 0.0;
+      inwards = inwards || volume < 0.0;
+      neither = neither || volume == 0.0;
     }
   }
-  return inwards == 0 ? Facing::kOutwards : inwards == outer ? Facing::kInwards : Facing::kMixed;
+  if (inwards) {
+    return outwards ? Facing::kMixed : Facing::kInwards;
+  }
+  return neither && !outwards ? Facing::kNeither : Facing::kOutwards;
 }
 
 RepairReport repair(Mesh& mesh, const RepairOptions& options) {

@@ -33,8 +33,9 @@ std::size_t remove_unreferenced(Mesh& mesh);
 std::size_t orient(Mesh& mesh);
 
 /// Where the faces of the closed components of an oriented mesh look, cavities left out: all of
-/// them outwards, all inwards as those of a room, or some this way and some that.
-enum class Facing : std::uint8_t { kOutwards, kInwards, kMixed };
+/// them outwards, all inwards as those of a room, some this way and some that, or neither, where
+/// each face has one that looks the other way and nothing is enclosed.
+enum class Facing : std::uint8_t { kOutwards, kInwards, kMixed, kNeither };
 Facing facing(const Mesh& mesh);
 
 struct RepairOptions {

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/mesh/mesh_edges.h"
+#include "core/geometry/mesh/mesh_size.h"
 #include "core/geometry/volume/boundary_cone.h"
 #include "core/geometry/volume/flood_fill.h"
 #include "core/geometry/volume/grid_crossings.h"
@@ -232,6 +233,13 @@ bool is_small(const BoundaryCone& cone) {
   return cone.fans.size() <= kFewFans && cone.mesh.triangles.size() <= kFewTriangles;
 }
 
+Mesh turned(Mesh mesh) {
+  for (Triangle& triangle : mesh.triangles) {
+    std::swap(triangle[1], triangle[2]);
+  }
+  return mesh;
+}
+
 void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
                      const WorkReport& report) {
   BoundaryCone cone = boundary_cone(mesh);
@@ -239,6 +247,10 @@ void fill_by_winding(const Mesh& mesh, const Bvh* hierarchy, VoxelSolid& solid,
     Mesh welded = mesh;
     weld(welded, 0.0);
     cone = boundary_cone(welded);
+  }
+  if (!cone.fans.empty() && signed_volume(mesh) < 0.0) {  // faces of an open mesh look inwards
+    fill_by_winding(turned(mesh), nullptr, solid, report);
+    return;
   }
   if (!is_small(cone)) {
     hierarchy != nullptr ? fill_by_hierarchy(*hierarchy, solid, report)

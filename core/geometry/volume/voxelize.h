@@ -11,7 +11,8 @@ namespace haptrial::geometry {
 enum class InsideRule {
   kParity,   // a ray from it leaves the mesh an odd number of times; for closed meshes
   kWinding,  // the generalized winding number is above one half; for any mesh. Where it is a
-             // whole number everywhere: is not 0, so that faces may look inwards
+             // whole number everywhere: is not 0, so that faces may look inwards. An open mesh
+             // whose signed_volume() is negative is filled as if all its faces were turned
   kFlood,    // reached from a seed without crossing the surface; for closed meshes
 };
 

@@ -44,7 +44,7 @@ struct EvaluateOptions {
   int resolution{64};
   std::optional<double> shading;
   std::vector<double> tip{0.0, 0.0, 0.0};
-  double radius{0.0};
+  std::optional<double> radius;
   std::vector<double> sensor{1.0, 0.0, 0.0, 0.0};  // w, x, y, z
   std::vector<double> free;
   std::vector<double> load;
@@ -101,7 +101,7 @@ Eigen::Vector3d unit_vector(const char* what, const Eigen::Vector3d& v) {
 }
 
 void take_sensors(const EvaluateOptions& o, evaluation::PrepareOptions& p) {
-  p.radius = kMilli * checked_real("--radius", o.radius, 0.0, 1e3);
+  p.radius = kMilli * checked_real("--radius", o.radius.value_or(0.0), 0.0, 1e3);
   p.tip = kMilli * Eigen::Vector3d(o.tip[0], o.tip[1], o.tip[2]);
   const Eigen::Quaterniond q(o.sensor[0], o.sensor[1], o.sensor[2], o.sensor[3]);
   if (!(std::abs(q.norm() - 1.0) <= 0.01)) {
@@ -204,7 +204,8 @@ struct GivenRecording {
   evaluation::PrepareOptions prepare;
 };
 
-/// Reads the given recording; the streams of a session file have one clock and no load.
+/// Reads the given recording; the streams of a session file have one clock and no load, and its
+/// definition says how large the tool is.
 /// @param prepare  as the options say
 GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions prepare) {
   const fs::path first(o.recording.front());
@@ -221,6 +222,9 @@ GivenRecording read_given(const EvaluateOptions& o, evaluation::PrepareOptions p
   }
   evaluation::SessionContact contact =
       evaluation::read_session_contact(record::SessionReader(first), {o.object, o.trial});
+  if (!o.radius) {
+    prepare.radius = contact.tool_radius;
+  }
   prepare.lag = prepare.lag.value_or(0.0);
   if (prepare.free.empty() && !prepare.load) {
     prepare.load = evaluation::SensorLoad{};
@@ -280,9 +284,16 @@ std::vector<Rendered> read_rendered(const std::vector<std::string>& files) {
   return all;
 }
 
-evaluation::OtherRendering judged(const evaluation::PreparedContact& contact, Rendered rendered) {
+/// @param found  without the file
+evaluation::OtherRendering judged(const evaluation::Evaluation& found, Rendered rendered) {
+  const std::vector<std::string> names = evaluation::force_names(found);
+  if (std::ranges::find(names, rendered.name) != names.end()) {
+    throw InputError(
+        fmt::format("{}: contact.csv has forces called {}, too; give the file a name of its own",
+                    rendered.file, rendered.name));
+  }
   try {
-    return evaluation::measured_forces(contact, rendered.name, std::move(rendered.forces));
+    return evaluation::measured_forces(found.contact, rendered.name, std::move(rendered.forces));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", rendered.file, error.what()));
   }
@@ -347,7 +358,7 @@ int evaluate(const EvaluateOptions& options) {
     }
   }
   for (Rendered& each : rendered) {
-    found.others.push_back(judged(found.contact, std::move(each)));
+    found.others.push_back(judged(found, std::move(each)));
   }
   if (!options.out.empty()) {
     evaluation::write_evaluation(found, names, options.out);
@@ -392,7 +403,9 @@ void add_sensor_options(CLI::App& sub, EvaluateOptions& o) {
   sub.add_option("--tip", o.tip,
                  with_default("Place of the tip in the tracked frame, x y z [mm]", words_of(o.tip)))
       ->expected(3);
-  sub.add_option("--radius", o.radius, with_default("Radius of the tip's sphere [mm]", o.radius));
+  sub.add_option("--radius", o.radius,
+                 "Radius of the tip's sphere [mm] (default: 0; of a session file the object's "
+                 "tool_radius)");
   sub.add_option(
          "--sensor", o.sensor,
          with_default(

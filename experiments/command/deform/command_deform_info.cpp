@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/deformable/body/fastest_vibration.h"
@@ -19,8 +20,8 @@ namespace {
 
 struct DeformInfoOptions {
   DeformInput input;
-  int resolution{20};
-  double scale{1.0};
+  std::optional<int> resolution;
+  std::optional<double> scale;
   std::vector<double> constants;
 };
 
@@ -28,6 +29,8 @@ using Eigen::Vector3d;
 using geometry::TetMesh;
 using geometry::Tetrahedron;
 
+constexpr int kResolution = 20;
+constexpr double kScale = 1.0;  // [m]
 constexpr double kFlat = 1e-6;  // six volumes, of the longest edge's cube, as check_body()
 
 /// One tetrahedron's shape.
@@ -168,13 +171,28 @@ TetMesh mesh_alone(const DeformInfoOptions& o, const MemoryBudget& budget) {
   if (file.extension() != ".node" && !is_mesh(file)) {
     throw InputError(fmt::format("{}: allowed: .toml, .obj, .ply, .stl or .node", o.input.file));
   }
-  setup.source.scale = checked_real("--scale", o.scale, 1e-12, 1e12);
-  setup.source.resolution = checked_number("--resolution", o.resolution, 1, 1000);
+  setup.source.scale = checked_real("--scale", o.scale.value_or(kScale), 1e-12, 1e12);
+  setup.source.resolution =
+      checked_number("--resolution", o.resolution.value_or(kResolution), 1, 1000);
   return deformable::body_of(
       setup, [&](const std::string& what, double bytes) { budget.check(what, bytes); });
 }
 
+/// Options that would be without effect.
+void check_source_options(const DeformInfoOptions& o) {
+  const std::filesystem::path ending = std::filesystem::path(o.input.file).extension();
+  if (ending == ".toml" && (o.resolution || o.scale)) {
+    throw InputError(fmt::format("{} is for a mesh; {} says it itself, in [body]",
+                                 o.resolution ? "--resolution" : "--scale", o.input.file));
+  }
+  if (ending == ".node" && o.resolution) {
+    throw InputError(fmt::format(
+        "--resolution is for a surface that is filled; {} has its tetrahedra", o.input.file));
+  }
+}
+
 int deform_info(const DeformInfoOptions& options) {
+  check_source_options(options);
   const MemoryBudget budget(options.input.max_memory);
   const bool stated = std::filesystem::path(options.input.file).extension() == ".toml";
   DeformBody body;
@@ -211,8 +229,8 @@ void add_deform_info(CLI::App& deform, int& status) {
   add_deform_input(*sub, o.input,
                    "Definition of a body (.toml), mesh (.obj, .ply, .stl) or tetrahedra (.node)");
   sub->add_option("--resolution", o.resolution,
-                  with_default("Number of cubes along the longest axis of a mesh", o.resolution));
-  sub->add_option("--scale", o.scale, with_default("Length of one unit of a mesh [m]", o.scale));
+                  with_default("Number of cubes along the longest axis of a mesh", kResolution));
+  sub->add_option("--scale", o.scale, with_default("Length of one unit of a mesh [m]", kScale));
   sub->add_option("--springs", o.constants,
                   "Constants of springs, of lengths, areas and volumes [J], whose stable step is "
                   "computed")

@@ -26,14 +26,18 @@ struct DeformReferenceOptions {
   std::string out;
   std::vector<std::string> loads;
   std::string model{"static"};
-  double seconds{1.0};
-  double step{1e-3};
-  double damping{0.0};
+  std::optional<double> seconds;
+  std::optional<double> step;
+  std::optional<double> damping;
   bool motion{false};
   int frames{20};
   double tolerance{1e-8};
   std::string constants;
 };
+
+constexpr double kSeconds = 1.0;
+constexpr double kStep = 1e-3;  // [s]
+constexpr double kDamping = 0.0;
 
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
@@ -59,14 +63,14 @@ Answer dynamics(const DeformBody& body, const deformable::ElasticBody& elastic,
                 const NamedLoad& load, const DeformReferenceOptions& o, Progress& progress,
                 double done) {
   deformable::DynamicOptions options;
-  options.step = checked_real("--step", o.step, 1e-9, 10.0);
-  options.mass_damping = checked_real("--damping", o.damping, 0.0, 1e6);
+  options.step = checked_real("--step", o.step.value_or(kStep), 1e-9, 10.0);
+  options.mass_damping = checked_real("--damping", o.damping.value_or(kDamping), 0.0, 1e6);
   deformable::DynamicSolver solver(elastic, load.load.holds, options);
   std::vector<Vector3d> force(body.mesh.vertices.size(), Vector3d::Zero());
   for (const auto& nodal : load.load.forces) {
     force[static_cast<std::size_t>(nodal.vertex)] += nodal.force;
   }
-  const double seconds = checked_real("--seconds", o.seconds, options.step, 1e6);
+  const double seconds = checked_real("--seconds", o.seconds.value_or(kSeconds), options.step, 1e6);
   while (solver.time() < seconds - 0.5 * options.step) {
     solver.step(force);
     progress.update(done + solver.time() / seconds, load.load.name, 0.0);
@@ -82,9 +86,9 @@ Answer motion_of(const DeformBody& body, const deformable::ElasticBody& elastic,
                  const NamedLoad& load, const DeformReferenceOptions& o, exchange::NewFolder& out) {
   constexpr int kMostFrames = 100000;
   RecordedMotionOptions options;
-  options.seconds = checked_real("--seconds", o.seconds, 1e-6, 1e6);
+  options.seconds = checked_real("--seconds", o.seconds.value_or(kSeconds), 1e-6, 1e6);
   options.frames = checked_number("--frames", o.frames, 1, kMostFrames);
-  options.damping = checked_real("--damping", o.damping, 0.0, 1e6);
+  options.damping = checked_real("--damping", o.damping.value_or(kDamping), 0.0, 1e6);
   options.tolerance = checked_real("--tolerance", o.tolerance, 1e-13, 1e-2);
   std::optional<deformable::SpringBody> springs;
   if (!o.constants.empty()) {
@@ -127,6 +131,14 @@ void print_damping(const Answer& answer) {
 void check_motion_options(const DeformReferenceOptions& o) {
   if (o.motion && o.model != "static") {
     throw InputError("--motion chooses its own steps; leave --model out");
+  }
+  const bool dynamic = o.model == "dynamic";
+  if (o.step && !dynamic) {
+    throw InputError("--step is for --model dynamic");
+  }
+  if ((o.seconds || o.damping) && !dynamic && !o.motion) {
+    throw InputError(fmt::format("{} is for --model dynamic or --motion; a body at rest has none",
+                                 o.seconds ? "--seconds" : "--damping"));
   }
 }
 
@@ -232,9 +244,10 @@ void add_deform_reference(CLI::App& deform, int& status) {
       ->allow_extra_args(false);
   sub->add_option("--model", o.model, with_default("Model: static or dynamic", o.model));
   sub->add_option("--seconds", o.seconds,
-                  with_default("Duration of a dynamic model [s]", o.seconds));
-  sub->add_option("--step", o.step, with_default("Step of a dynamic model [s]", o.step));
-  sub->add_option("--damping", o.damping, with_default("Damping by mass [1/s]", o.damping));
+                  with_default("Duration of a dynamic model or a motion [s]", kSeconds));
+  sub->add_option("--step", o.step, with_default("Step of a dynamic model [s]", kStep));
+  sub->add_option("--damping", o.damping,
+                  with_default("Damping by mass of a dynamic model or a motion [1/s]", kDamping));
   CLI::Option* motion =
       sub->add_flag("--motion", o.motion,
                     "Motion from rest under the load by SUNDIALS CVODE, to a stated tolerance");

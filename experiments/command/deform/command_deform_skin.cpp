@@ -79,7 +79,7 @@ void add_deform_skin(CLI::App& deform, int& status) {
       "--neighbours", o.neighbours,
       with_default("Number of vertices of the body that place one of the surface", o.neighbours));
   sub->add_option("--format", o.format,
-                  with_default("Format of the meshes: ply, obj, stl or off", o.format));
+                  with_default("Format of the meshes: ply, obj or stl", o.format));
 }
 
 }  // namespace haptrial::experiments

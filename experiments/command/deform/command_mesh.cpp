@@ -59,6 +59,15 @@ void print_voxels(const VoxelizedMesh& made) {
   fmt::print("voxelized   in {:.1f} ms\n", 1e3 * made.seconds);
 }
 
+/// An empty solid is more often a mesh without an inside than one that was meant so.
+void warn_if_empty(const VoxelizedMesh& made) {
+  if (geometry::count_inside(made.solid) == 0) {
+    fmt::print(stderr,
+               "WARNING: no voxel is inside. Choose a finer resolution, or see with haptrial mesh "
+               "info whether the mesh is open or its faces look both ways.\n");
+  }
+}
+
 /// Edges, components and orders of a mesh while it is looked at, and its hierarchy in a repair.
 void check_room(const geometry::Mesh& mesh, double bytes_per_triangle, const MemoryBudget& budget) {
   constexpr double kPerVertex = 100.0;
@@ -138,6 +147,7 @@ int mesh_voxelize(const MeshOptions& options) {
   const geometry::Mesh mesh = load_mesh(options.input, budget);
   const VoxelizedMesh made = voxelize_mesh(mesh, options.voxels, budget);
   print_voxels(made);
+  warn_if_empty(made);
   geometry::write_volume(options.out, geometry::volume_of(made.solid), options.overwrite);
   fmt::print("wrote       {}\n", options.out);
   if (!options.picture.empty()) {
@@ -183,7 +193,7 @@ void print_map(const geometry::DistanceMap& map) {
     farthest = std::max(farthest, distance);
   }
   fmt::print("distances   of {} voxels; deepest {:.6g} m, farthest outside {:.6g} m\n", count,
-             -deepest, farthest);
+             std::abs(deepest), farthest);
 }
 
 int mesh_distance(const MeshOptions& options) {
@@ -200,6 +210,7 @@ int mesh_distance(const MeshOptions& options) {
   const VoxelizedMesh made = voxelize_mesh(mesh, options.voxels, budget);
   const geometry::DistanceMapOptions wanted{.everywhere = options.everywhere,
                                             .points = !options.points.empty()};
+  warn_if_empty(made);
   budget.check("the distance map", geometry::distance_map_memory(made.solid.grid, wanted));
 
   Clock::time_point start = Clock::now();

@@ -344,6 +344,14 @@ TEST(EvaluateRenderingTest, ForcesOnTheBodyAreDoubted) {
             0.02 * turned.renderings[0].force.mean_force);
 }
 
+/// A plate of 200 x 20 x 200 mm whose file says m: the path lies in its middle, 10 m below a face.
+TEST(EvaluateRenderingTest, AMeshInAnotherUnitRoundThePathIsRefused) {
+  const contact::FeltBody plate(geometry::make_box({200.0, 20.0, 200.0}));
+  EXPECT_THAT(test::message_of<std::invalid_argument>(
+                  [&] { evaluate_rendering(rubbed_sphere(0.0), plate, known_frame()); }),
+              HasSubstr("--units must be the unit of the mesh"));
+}
+
 TEST(EvaluateRenderingTest, RefusesBadOptions) {
   EvaluationOptions options = known_frame();
   options.renderers.clear();

@@ -140,6 +140,7 @@ TEST(EvaluationFilesTest, TheObjectIsATableOfADefinition) {
   Table object = root.table("objects").table("recorded");
   EXPECT_EQ(object.text("mesh"), "duck.stl");
   EXPECT_EQ(object.number("scale", {}, ""), 1e-3);
+  EXPECT_EQ(object.number("damping", {}, ""), 0.0) << "an object without it is refused";
   Table friction = object.table("friction");
   EXPECT_NEAR(friction.number("dynamic", {}, ""), 0.2, 0.02);
   EXPECT_TRUE(friction.has("static"));
@@ -157,6 +158,11 @@ TEST(EvaluationFilesTest, WhatIsNotKnownIsNotStated) {
   unknown.identified->dynamic_friction = Interval{0.3, 0.25, 0.35};
   EXPECT_THAT(objects_toml(unknown, {"a", "b"}),
               HasSubstr("static = 0.3  # the other one's; this one is not known"));
+  unknown.identified->static_friction = Interval{0.2958, 0.29, 0.3016};
+  unknown.identified->dynamic_friction = Interval{0.3002, 0.295, 0.3054};
+  EXPECT_THAT(objects_toml(unknown, {"a", "b"}),
+              HasSubstr("static = 0.3002  # found as 0.2958 (95 %: 0.29 to 0.3016); a definition "
+                        "allows no less than 0.3002\ndynamic = 0.3002  # 95 %: 0.295 to 0.3054"));
   unknown.identified.reset();
   EXPECT_THAT(objects_toml(unknown, {"a", "b"}), HasSubstr("tells neither stiffness nor friction"));
 }

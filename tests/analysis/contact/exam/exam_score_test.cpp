@@ -237,6 +237,13 @@ TEST_F(WrittenExamTest, AnswersComeBackAndAMissingRowGetsASentence) {
   EXPECT_EQ(again.stability[7].span, 2e-5);
   EXPECT_EQ(read_failures(path("answers/failures.csv")).cells.size(), 17u * 9u);
   EXPECT_LT(score_case(exam[0], again.cases[0].answer).force.worst, 1e-6);  // the files' grain
+  ExamScore score = score_answers(path("answers"), exam);
+  std::vector<ExamScore> scores{score, score};
+  scores[0].answers.renderer = "mi-ne";
+  scores[1].answers.renderer = "mi ne";
+  EXPECT_THAT(test::message_of<InputError>([&] { write_scores(scores, exam, path("scores")); }),
+              testing::HasSubstr("'mi-ne' and 'mi ne' would both be written as mi-ne"));
+  EXPECT_FALSE(std::filesystem::exists(path("scores")));
   exam[0].tool.pop_back();
   EXPECT_THAT(test::message_of<InputError>([&] { read_answers(path("answers"), exam); }),
               testing::HasSubstr("4001 forces; allowed: 4000, one for each row of the path"));
@@ -262,6 +269,16 @@ TEST(ExamTablesTest, StabilityHasEveryCellOnce) {
   cells.pop_back();
   EXPECT_THAT(refusal(cells), testing::HasSubstr("has no row for 6000 N/m, friction 0.6, 2000 Hz; "
                                                  "allowed: a row for each of 36 cells"));
+}
+
+TEST(ExamTablesTest, AMapOfFailuresOfAnyNameComesBack) {
+  const test::TemporaryFolder folder;
+  for (const std::string name : {"mine", "mine, second", "the \"best\""}) {
+    std::ofstream(folder / "failures.csv") << failure_csv({{name, 0.0, 0.0, failure_cells()}});
+    const FailureMap again = read_failures(folder / "failures.csv");
+    EXPECT_EQ(again.renderer, name);
+    EXPECT_EQ(again.cells.size(), failure_cells().size());
+  }
 }
 
 TEST(ExamTablesTest, AMapOfFailuresHasEveryRidgeOnce) {

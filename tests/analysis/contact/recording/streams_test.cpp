@@ -79,6 +79,44 @@ TEST(StreamsTest, RepeatedSamplesAreLeftOut) {
   EXPECT_EQ(changes(force).time, (std::vector{0.0, 0.1, 0.2, 0.3}));
 }
 
+/// A sensor in the air, in contact from 1 s to 2 s, and in the air again, `repeats` rows a reading.
+ForceStream touch_between_airs(int repeats) {
+  ForceStream force;
+  for (int reading = 0; reading < 300; ++reading) {
+    const bool air = reading < 100 || reading >= 200;
+    for (int row = 0; row < repeats; ++row) {
+      force.time.push_back(0.01 * (reading + static_cast<double>(row) / repeats));
+      force.force.emplace_back(0.0, air ? 0.0 : 2.0 + std::sin(0.1 * reading), 0.0);
+    }
+  }
+  return force;
+}
+
+TEST(StreamsTest, AValueThatIsHeldStaysUntilItChanges) {
+  for (const int repeats : {1, 10}) {
+    const ForceStream force = changes(touch_between_airs(repeats));
+    EXPECT_NEAR(force.time.back(), 2.99, 0.01) << "the air at the end is recorded";
+    const ForceStream at = resampled(force, std::vector{0.5, 0.98, 1.5, 2.5}, 0.0);
+    EXPECT_EQ(at.force[0].y(), 0.0) << repeats;
+    EXPECT_EQ(at.force[1].y(), 0.0) << repeats;
+    EXPECT_NEAR(at.force[2].y(), 2.0 + std::sin(15.0), 1e-9) << repeats;
+    EXPECT_EQ(at.force[3].y(), 0.0) << repeats;
+  }
+}
+
+TEST(StreamsTest, AProbeThatRestsStaysWhereItIs) {
+  PoseStream pose;
+  for (const double t : even_times(0.0, 3.0, 0.01)) {
+    pose.time.push_back(t);
+    pose.position.emplace_back(std::max(0.0, t - 2.0), 0.0, 0.0);
+    pose.orientation.push_back(Eigen::Quaterniond::Identity());
+  }
+  const PoseStream at = resampled(changes(pose), std::vector{1.0, 1.98, 2.5});
+  EXPECT_EQ(at.position[0].x(), 0.0);
+  EXPECT_EQ(at.position[1].x(), 0.0);
+  EXPECT_NEAR(at.position[2].x(), 0.5, 1e-9);
+}
+
 TEST(StreamsTest, BadStreamsAreNamed) {
   ForceStream force = line_force(10.0, 1.0);
   force.time[3] = force.time[2];

@@ -131,7 +131,7 @@ TEST(ReachQuantitiesTest, ConditionsAreComparedOverTheCombinationsThatBothHave) 
   for (int i = 0; i < kReaches; ++i) {
     const bool is_far = i % 4 < 2, second = i % 2 == 1;
     StudyTrial trial;
-    trial.variables.push_back({"block", 0, second ? 2.0 : 1.0});
+    trial.variables.push_back({"block", 0, second ? 2.0 : 1.0, {}});
     StudyReach reach;
     reach.trial = made.data.trials.size();
     reach.way.target = {is_far ? 0.12 : 0.06, 0.0, 0.0};

@@ -130,6 +130,28 @@ TEST_F(SetupTest, BadFilesGetASentence) {
               HasSubstr("is in a region that is held and in one that is moved"));
 }
 
+TEST_F(SetupTest, AVertexIsMovedOneWay) {
+  const auto moved_by = [&](const char* first, const char* second) {
+    return load_of(
+        fmt::format("held = [\"bottom\"]\nmoved = [{{ region = \"top\", by = {} }}, "
+                    "{{ region = \"ball\", by = {} }}]\n",
+                    first, second));
+  };
+  EXPECT_THAT(test::message_of([&] { moved_by("[0.0, 0.0, 0.001]", "[0.0, 0.0, 0.003]"); }),
+              HasSubstr("is in two regions that are moved differently"));
+  EXPECT_FALSE(moved_by("[0.0, 0.0, 0.001]", "[0.0, 0.0, 0.001]").holds.empty());
+}
+
+TEST_F(SetupTest, MoreMaterialsThanTetrahedraCanTellApartAreRefused) {
+  std::string more;
+  for (int m = 0; m < 256; ++m) {
+    more += fmt::format("[materials.m{}]\nyoung = 1e6\npoisson = 0.4\nregion = \"half\"\n", m);
+  }
+  const DeformSetup made = setup(std::string(kBlock) + kMaterial + kRegions + more);
+  EXPECT_THAT(test::message_of([&] { elasticity_of(made, body_of(made)); }),
+              HasSubstr("body.toml: the body has 257 materials; allowed: at most 256"));
+}
+
 std::string box_in_obj(const Vector3d& low, const Vector3d& high, int first) {
   std::string text;
   for (int corner = 0; corner < 8; ++corner) {

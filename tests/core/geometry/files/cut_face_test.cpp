@@ -142,6 +142,28 @@ TEST(CutFaceTest, AFaceWithAHoleThroughABridgeIsCut) {
   EXPECT_DOUBLE_EQ(area(mesh), 12.0);
 }
 
+TEST(CutFaceTest, AConcaveFaceFarFromTheOriginHasItsArea) {
+  for (const double far : {1e3, 1e5, 4e6, 1e9}) {
+    Polygon moved = kAngle;
+    for (Eigen::Vector2d& corner : moved) {
+      corner += Eigen::Vector2d(0.125 * far, far);
+    }
+    for (std::size_t first = 0; first < moved.size(); ++first) {
+      const Mesh mesh =
+          parse_mesh(Prism{moved, first}.bytes(MeshFormat::kObj), MeshFormat::kObj, "m");
+      EXPECT_NEAR(area(mesh), 30.0, 1e-9) << far << " from corner " << first;
+    }
+  }
+}
+
+/// Single precision moves the corners of a face by more than its folds.
+TEST(CutFaceTest, AFaceThatRoundingFoldsFarFromTheOriginIsRead) {
+  EXPECT_EQ(
+      refusal_of_prism(
+          {{{1e6, 0.0}, {1e6 + 1.0, 0.0}, {1e6 + 1.0, 0.0625}, {1e6 + 0.5, -0.01}, {1e6, 0.0625}}}),
+      "read");
+}
+
 TEST(CutFaceTest, AFaceThatCrossesItselfIsNamed) {
   EXPECT_THAT(refusal_of_prism({{{0, 0}, {4, 0}, {0, 3}, {4, 4}}}),
               HasSubstr("m: face 1 with 4 corners crosses itself"));

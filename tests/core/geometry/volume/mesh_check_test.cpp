@@ -190,6 +190,23 @@ TEST(MeshCheckTest, AFaceThatIsTurnedIsFound) {
   EXPECT_EQ(r.one_sided_components, 0u);
 }
 
+TEST(MeshCheckTest, WhereFacesOfAnOpenOrTwoSidedMeshLookIsTold) {
+  Mesh open = make_sphere(1.0, 6);
+  open.triangles.pop_back();
+  EXPECT_THAT(describe(check_mesh(open)), Contains(HasSubstr("in 1 loop, faces look outwards")));
+  Mesh turned = open;
+  for (Triangle& t : turned.triangles) {
+    std::swap(t[0], t[1]);
+  }
+  EXPECT_THAT(describe(check_mesh(turned)), Contains(HasSubstr("in 1 loop, faces look inwards")));
+  const Mesh sheet{{{0, 0, 0}, {1, 0, 0.3}, {0, 1, 0.1}}, {{0, 1, 2}}};
+  EXPECT_THAT(describe(check_mesh(sheet)), testing::Not(Contains(HasSubstr("look"))));
+  open.triangles.insert(open.triangles.end(), turned.triangles.begin(), turned.triangles.end());
+  const MeshReport both = check_mesh(open);
+  EXPECT_EQ(both.facing, Facing::kNeither);
+  EXPECT_THAT(describe(both), Contains(HasSubstr("so that nothing is inside")));
+}
+
 TEST(MeshCheckTest, AMeshOfNothingButRepeatedCornersHasNoSurface) {
   const MeshReport r = check_mesh({{{0, 0, 0}}, {{0, 0, 0}}});
   EXPECT_FALSE(r.closed);

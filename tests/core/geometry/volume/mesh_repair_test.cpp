@@ -177,6 +177,15 @@ TEST(FacingTest, EachComponentCountsAndCavitiesDoNot) {
   EXPECT_EQ(facing(joined(inverted(large), small)), Facing::kInwards) << "a room with a ball in it";
 }
 
+TEST(FacingTest, FacesThatAreThereBothWaysLookNeitherWay) {
+  Mesh both = make_gear();
+  const Mesh other_way = inverted(both);
+  both.triangles.insert(both.triangles.end(), other_way.triangles.begin(),
+                        other_way.triangles.end());
+  EXPECT_EQ(facing(both), Facing::kNeither);
+  EXPECT_EQ(facing(joined(both, make_sphere(0.001, 4))), Facing::kOutwards) << "beside a solid";
+}
+
 TEST(OrientTest, PartsThatOverlapAllLookOutwards) {
   const Mesh sphere = make_sphere(1.0, 8);
   Mesh moved = sphere;

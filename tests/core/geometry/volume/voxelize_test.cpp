@@ -274,6 +274,27 @@ TEST(VoxelizeTest, TrianglesThatShareNothingFollowTheWindingNumberToo) {
   expect_winding(apart(make_sphere(1.0, 9), 0.0), 12, "equal places");
 }
 
+Mesh looking_inwards(Mesh mesh) {
+  for (Triangle& triangle : mesh.triangles) {
+    std::swap(triangle[0], triangle[1]);
+  }
+  return mesh;
+}
+
+TEST(VoxelizeTest, AnOpenMeshHasTheSameInsideWhicheverWayItsFacesLook) {
+  Mesh hole = make_sphere(1.0, 8);
+  hole.triangles.pop_back();
+  const Mesh sphere = make_sphere(1.0, 9);
+  for (const Mesh& mesh :
+       {hole, apart(sphere, 0.0), apart(sphere, 0.1), apart(make_sphere(1.0, 32), 0.1)}) {
+    const VoxelGrid grid = grid_for(mesh, 5, 1);
+    const VoxelSolid outwards = voxelize(mesh, grid, InsideRule::kWinding);
+    EXPECT_GT(count_inside(outwards), 50u);
+    EXPECT_EQ(inside(voxelize(looking_inwards(mesh), grid, InsideRule::kWinding)),
+              inside(outwards));
+  }
+}
+
 TEST(VoxelizeTest, AMeshThatIsMostlyBoundaryIsLeftToTheHierarchy) {
   expect_winding(apart(make_sphere(1.0, 32), 0.1), 5, "20,480 cones");
 }
