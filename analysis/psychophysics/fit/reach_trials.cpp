@@ -96,13 +96,32 @@ double share_of(const Eigen::Matrix3d& field, const Eigen::Matrix3d& reference) 
   return square > 0.0 ? field.cwiseProduct(reference).sum() / square : 0.0;
 }
 
+/// Whether reaches of one block have fields that push this way and that.
+bool alternates(const std::vector<StudyReach*>& reaches, const Eigen::Matrix3d& field) {
+  std::map<std::string, bool> pushes;  // as `field` does, by block
+  return std::ranges::any_of(reaches, [&](const StudyReach* each) {
+    const double share = each->way.active ? share_of(each->way.field, field) : 0.0;
+    return share != 0.0 &&
+           pushes.try_emplace(each->block, share > 0.0).first->second != (share > 0.0);
+  });
+}
+
+/// The one of a field and its opposite whose largest entry is positive.
+Eigen::Matrix3d without_sign(const Eigen::Matrix3d& field) {
+  Eigen::Index row = 0, column = 0;
+  field.cwiseAbs().maxCoeff(&row, &column);
+  return field(row, column) < 0.0 ? Eigen::Matrix3d(-field) : field;
+}
+
 /// The field that a participant learns is the first that acts, as one of zeros does not; if none
-/// does, the first stated.
+/// does, the first stated. A field that turns over from trial to trial is learnt by nobody: then
+/// the sign is the same for all, whichever came first.
 void turn_to_field(std::vector<StudyReach*>& reaches) {
   const auto active = std::find_if(reaches.begin(), reaches.end(), [](const StudyReach* each) {
     return each->way.active && !each->way.field.isZero(0.0);
   });
-  const Eigen::Matrix3d field = (active == reaches.end() ? reaches.front() : *active)->way.field;
+  const Eigen::Matrix3d first = (active == reaches.end() ? reaches.front() : *active)->way.field;
+  const Eigen::Matrix3d field = alternates(reaches, first) ? without_sign(first) : first;
   for (StudyReach* reach : reaches) {
     const WayFrame frame(reach->way.start, reach->way.target);
     const double push = frame.lateral(field * frame.along());

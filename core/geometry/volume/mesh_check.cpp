@@ -169,10 +169,11 @@ const char* words_of(Facing facing) {
          "difference";
 }
 
-/// The side of an open surface that counts as its inside, where it is not flat.
+/// The side of an open surface that counts as its inside, where it is much like a closed one: of a
+/// ball with a hole the volume is a tenth of area and diagonal, of a sheet it says nothing.
 const char* open_words(const MeshReport& r) {
-  constexpr double kFlat = 1e-9;
-  if (!r.oriented() || std::abs(r.volume) <= kFlat * r.area * r.box.diagonal().norm()) {
+  constexpr double kLikeASheet = 0.06;
+  if (!r.oriented() || std::abs(r.volume) <= kLikeASheet * r.area * r.box.diagonal().norm()) {
     return "";
   }
   return r.volume > 0.0 ? ", faces look outwards from its middle"

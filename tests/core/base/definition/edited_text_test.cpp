@@ -411,7 +411,7 @@ TEST(EditedText, AQuoteInTheNameOfATableHidesNoOtherTable) {
       "[pages.\"at 5\\\" off\"]\ntext = \"a\"\n\n[pages.hand]\ntext = \"b\"\n\n[envelope]\n"
       "max_force = 3.0\n";
   EXPECT_EQ(without_key(kPages, "a.toml", "pages.at 5\" off"),
-            "[pages.hand]\ntext = \"b\"\n\n[envelope]\nmax_force = 3.0\n");
+            "\n[pages.hand]\ntext = \"b\"\n\n[envelope]\nmax_force = 3.0\n");
 }
 
 TEST(EditedText, EntriesAreAddedBelowTheLast) {
