@@ -67,6 +67,8 @@ void set_intervals(const CycleTable& table, double level, std::vector<CyclePoint
     } else if (const auto left = mean_interval(column_of(own, c), level)) {
       const double half = 0.5 * (left->high - left->low) * std::sqrt(cycles / (cycles - 1.0));
       point.within = CyclePoint::Limits{point.mean - half, point.mean + half};
+    } else {
+      point.within = Undefined{left.because()};
     }
   }
 }
