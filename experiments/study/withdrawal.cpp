@@ -85,7 +85,8 @@ class NamedSubject {
       if (is_session_file(file)) {
         const auto info = info_of(file);
         const std::string other = info ? info->subject : identifier_in(file);
-        if (other.size() > subject_.size() && has_word(other, subject_)) {
+        const bool goes_on = info ? has_word(other, subject_) : other.starts_with(subject_ + "-");
+        if (other != subject_ && goes_on) {
           longer_.insert(other);
         }
       }
@@ -299,7 +300,9 @@ OtherSessions other_sessions(const std::vector<fs::path>& files, const NamedSubj
         }
       }
     } catch (const std::exception&) {
-      continue;  // find_sessions() has judged it by its name
+      if (const std::string other = identifier_in(file); other != subject.identifier()) {
+        others.participants.insert(other);
+      }
     }
   }
   return others;

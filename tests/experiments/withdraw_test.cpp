@@ -108,9 +108,8 @@ TEST_F(WithdrawTest, ExcludedFilesAndReasonsGoAndOthersStay) {
 }
 
 TEST_F(WithdrawTest, FilesOfSomebodyWithALongerIdentifierStay) {
-  const std::vector<std::string> theirs{"S02-b.h5.partial", "S02-b-own.csv",
-                                        "export/S02-b/curve.csv", "replay-S02-b.mp4",
-                                        "S02-b-session-2.h5"};
+  const std::vector<std::string> theirs{"S02-b.h5.partial", "S02-b-session-2.h5",
+                                        "export/S02-b/curve.csv", "replay-S02-b.mp4"};
   const std::vector<std::string> own{"S02-session-2.h5.partial", "S02-own.csv",
                                      "export/S02/curve.csv", "replay-S02.mp4"};
   for (const char* folder : {"out/mine/export/S02-b", "out/mine/export/S02"}) {
@@ -122,6 +121,8 @@ TEST_F(WithdrawTest, FilesOfSomebodyWithALongerIdentifierStay) {
     }
   }
   write_text(folder_ / "out/mine/copy-of-S02.h5", "torn");
+  fs::last_write_time(folder_ / "out/mine/replay-S02-b.mp4",
+                      fs::last_write_time(folder_ / "out/mine/S02.h5") - std::chrono::hours(1));
   const auto done = run("withdraw out/mine S02 --yes");
   EXPECT_EQ(done.status, 0) << done.errors;
   EXPECT_THAT(done.output, HasSubstr("leaves, although it names the participant: "

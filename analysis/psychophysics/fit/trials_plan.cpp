@@ -451,8 +451,8 @@ void check_measured(Table& table, const PlanDefaults& defaults, const TrialsPlan
 }
 
 /// @throws as Table::reject(), if a key names what the definition does not have
-void check_name(Table& table, const char* key, const std::string& name, const char* what,
-                const std::vector<std::string>& known) {
+void check_known(Table& table, const char* key, const std::string& name, const char* what,
+                 const std::vector<std::string>& known) {
   if (!name.empty() && !known.empty() && !has_name(known, name)) {
     table.reject(key, fmt::format("\"{}\"", name),
                  fmt::format("{}: {}", what, fmt::join(known, ", ")));
@@ -467,13 +467,13 @@ std::vector<std::string> question_names(const PlanDefaults& defaults) {
 
 /// An answer that no choice is called would never be given.
 void check_answers(Table& table, const PlanDefaults& defaults, TrialsPlan& plan) {
-  check_name(table, "question", plan.question, "a question", question_names(defaults));
-  check_name(table, "level", plan.level, "a variable of the trials", defaults.produced.variables);
+  check_known(table, "question", plan.question, "a question", question_names(defaults));
+  check_known(table, "level", plan.level, "a variable of the trials", defaults.produced.variables);
   const PlanQuestion* question = question_of(defaults, plan);
   if (question == nullptr || question->choices.empty()) {
     return;
   }
-  check_name(table, "yes", plan.yes, "an answer", question->choices);
+  check_known(table, "yes", plan.yes, "an answer", question->choices);
   if (plan.kind == AnalysisKind::kDetection && plan.yes.empty() &&
       !has_name(question->choices, "yes")) {
     table.reject("yes", fmt::format("is missing, and no answer is \"yes\"; add the one that says "
@@ -529,7 +529,7 @@ void add_answers(Schema<TrialsPlan>& schema, const PlanDefaults& defaults) {
       .otherwise("the second question")
       .only_if(may_rate)
       .check([&](Table& table, P& plan) {
-        check_name(table, "rating", plan.rating, "a question", question_names(defaults));
+        check_known(table, "rating", plan.rating, "a question", question_names(defaults));
       })
       .text("stimulus", &P::stimulus, "Factor that says which stimulus was presented")
       .otherwise("the first factor whose levels are choices, else the first factor")
