@@ -42,8 +42,8 @@ std::string level_of(const TrialsDefinition& d, const trials::TrialsPlan& plan) 
   return !plan.level.empty() ? plan.level : d.tracks.empty() ? "" : d.tracks.front().variable;
 }
 
-/// The definition's factors, and behind them what else its analysis tells trials apart by: values
-/// of blocks and [variables].
+/// The definition's factors. Behind them stand values of blocks and [variables] by which its analysis
+/// tells trials apart.
 std::vector<std::string> needed_factors(const TrialsDefinition& d, const trials::TrialsPlan& plan) {
   std::vector<std::string> needed;
   if (!d.order.factors.empty()) {
